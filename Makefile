@@ -1,0 +1,64 @@
+# `make help` lists what there is. Everything installs what it needs into .venv.
+SHELL := /bin/sh
+.DEFAULT_GOAL := help
+VENV := .venv
+BIN := $(VENV)/bin
+OUTPUT ?= outputs
+PYTHONS := $(PYTHON) python3 python3.13 python3.12 python3.11 python
+
+.PHONY: help
+help: ## list the targets
+	@grep -hE '^[a-z-]+:.*## ' Makefile | sed 's/:.*## /\t/' | awk -F '\t' '{printf "make %-9s %s\n", $$1, $$2}'
+
+.PHONY: paper
+paper: $(VENV)/ready ## do every published experiment and build the report (a few minutes)
+	@for file in conf/experiment/*.yaml; do \
+	  name=$$(basename $$file .yaml); echo "experiment $$name"; \
+	  $(BIN)/gapath experiment=$$name output=$(OUTPUT) || exit $$?; \
+	done
+	@$(BIN)/gapath-report $(OUTPUT)
+
+.PHONY: test
+test: $(VENV)/ready ## run all tests
+	@$(BIN)/python -m pytest
+
+.PHONY: check
+check: $(VENV)/ready ## lint, check formats, types and the borders between layers
+	@$(BIN)/ruff check
+	@$(BIN)/ruff format --check
+	@$(BIN)/mypy
+	@$(BIN)/lint-imports
+
+.PHONY: bench
+bench: $(VENV)/ready ## measure against rivals and the paper; ratios, into outputs/bench
+	@$(BIN)/python -m benchmarks --output $(OUTPUT)/bench
+
+.PHONY: report
+report: $(VENV)/ready ## build the report from whatever runs are there
+	@$(BIN)/gapath-report $(OUTPUT)
+
+.PHONY: golden
+golden: $(VENV)/ready ## accept today's results as the golden ones; look at the difference
+	@$(BIN)/python -m pytest -n 0 tests/test_golden.py --update-golden
+
+.PHONY: setup
+setup: $(VENV)/ready ## make the environment, .venv
+
+.PHONY: clean
+clean: ## remove the environment; outputs stay
+	rm -rf $(VENV)
+
+$(VENV)/ready: requirements.lock pyproject.toml
+	@set -e; found=; for python in $(PYTHONS); do \
+	  if $$python -c 'import sys, venv, ensurepip; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))' 2>/dev/null; \
+	  then found=$$python; break; fi; \
+	done; \
+	if [ -z "$$found" ]; then \
+	  echo "gapath needs Python 3.11, 3.12 or 3.13 with its venv module (Debian: python3-venv)." >&2; \
+	  echo "Tried: $(PYTHONS). Name another one: make PYTHON=/path/to/python ..." >&2; exit 2; \
+	fi; \
+	echo "making $(VENV) with $$($$found --version), about a minute"; \
+	rm -rf $(VENV); $$found -m venv $(VENV); \
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements.lock; \
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .; \
+	touch $(VENV)/ready

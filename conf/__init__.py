@@ -1,0 +1,1 @@
+"""Hydra configuration: groups map, planner, recorder and experiment."""

@@ -1,0 +1,49 @@
+"""Genetic path planning for mobile robots, as reproducible experiments.
+
+>>> import gapath
+>>> grid = gapath.load_map("kg18_test3")
+>>> gapath.plan(grid, (0, 24), (98, 24), planner="ga3", seed=7).status.name
+'FOUND'
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from gapath.api import load_map, plan
+    from gapath.errors import InputError
+    from gapath.grid import GridMap
+    from gapath.problem import CornerCutting, Plan, PlanStatus, Problem
+
+__all__ = [
+    "CornerCutting",
+    "GridMap",
+    "InputError",
+    "Plan",
+    "PlanStatus",
+    "Problem",
+    "load_map",
+    "plan",
+]
+
+_HOMES = {
+    "CornerCutting": "problem",
+    "GridMap": "grid",
+    "InputError": "errors",
+    "Plan": "problem",
+    "PlanStatus": "problem",
+    "Problem": "problem",
+    "load_map": "api",
+    "plan": "api",
+}
+
+
+def __getattr__(name: str) -> object:
+    """Import a public name when it is first used: numba alone takes half a second."""
+    if name not in _HOMES:
+        raise AttributeError(f"module 'gapath' has no attribute {name!r}")
+    return getattr(import_module(f"gapath.{_HOMES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return __all__

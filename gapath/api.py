@@ -1,0 +1,136 @@
+"""The library's three lines: load a map, plan on it, look at the plan."""
+
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from gapath.config import build
+from gapath.errors import InputError, require
+from gapath.grid import Field, GridMap
+from gapath.mapio.file import kinds
+from gapath.problem import CornerCutting, Plan, Planner, Problem
+from gapath.simulation import plan_once
+
+
+def yaml_values(group: str, name: str) -> dict[str, Any]:
+    """Read a YAML of ``conf`` and those that its defaults list names.
+
+    Parameters
+    ----------
+    group : str
+        "map" or "planner".
+    name : str
+        For example "kg18_test3" or "ga3".
+
+    Returns
+    -------
+    dict
+        ``kind`` and the settings.
+
+    Raises
+    ------
+    InputError
+        If there is no such YAML.
+    """
+    folder = files("gapath.conf") / group
+    names = sorted(path.name[:-5] for path in folder.iterdir() if path.name.endswith(".yaml"))
+    require(name in names, group, repr(name), f"one of {', '.join(names)}")
+    own: dict[str, Any] = yaml.safe_load((folder / f"{name}.yaml").read_text("utf-8"))
+    bases = [base for base in own.pop("defaults", []) if base != "_self_"]
+    values: dict[str, Any] = {}
+    for base in bases:
+        values |= yaml_values(group, base)
+    return values | own
+
+
+def load_map(path: str | Path, **settings: Any) -> GridMap:
+    """Load a map from a file, or one of gapath's own by its name.
+
+    Parameters
+    ----------
+    path : str or Path
+        A ROS ``map_server`` YAML, a MovingAI ``.map``, an image; or a name in ``conf/map``,
+        for example "kg18_test3".
+    **settings
+        Settings that replace those in ``conf/map``, for example ``unknown="free"`` or
+        ``instance=4``.
+
+    Returns
+    -------
+    GridMap
+        The map.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be used, or a setting is unknown or out of range.
+    """
+    ending = str(path).lower()
+    formats = [kind for suffix, kind in kinds().items() if ending.endswith(suffix)]
+    if formats:
+        settings["path"] = str(path)
+    values = yaml_values("map", formats[0] if formats else str(path))
+    grid: GridMap = build("map", values | settings, "map").read()
+    return grid
+
+
+def plan(
+    map: GridMap,
+    start: Field | None = None,
+    target: Field | None = None,
+    planner: str | Planner = "ga3",
+    seed: int = 0,
+    corner_cutting: str = "allow",
+    **settings: Any,
+) -> Plan:
+    """Plan a path.
+
+    Parameters
+    ----------
+    map : GridMap
+        The map.
+    start, target : (x, y), optional
+        Fields; by default those that the map's author meant.
+    planner : str or Planner
+        A name in ``conf/planner``, or a planner.
+    seed : int
+        Key of the random stream: the same seed gives the same plan.
+    corner_cutting : str
+        "allow", "one_side" or "forbid".
+    **settings
+        Settings that replace those in ``conf/planner``, for example ``population=200``.
+
+    Returns
+    -------
+    Plan
+        The answer; look at its status.
+
+    Raises
+    ------
+    InputError
+        If start or target cannot be used, or a setting is unknown or out of range.
+
+    Examples
+    --------
+    >>> import gapath
+    >>> grid = gapath.load_map("kg18_test1")
+    >>> gapath.plan(grid, planner="astar").cost
+    48.5
+    """
+    rules = [rule.name.lower() for rule in CornerCutting]
+    require(corner_cutting in rules, "corner_cutting", corner_cutting, f"one of {', '.join(rules)}")
+    start = map.start if start is None else start
+    target = map.target if target is None else target
+    if start is None or target is None:
+        missing = "map.start" if start is None else "map.target"
+        raise InputError(missing, None, "a field (x, y)")
+    if isinstance(planner, str):
+        values = yaml_values("planner", planner) | settings
+        chosen: Planner = build("planner", values, "planner")
+    else:
+        require(not settings, "settings", [*settings], "none: the planner is given ready made")
+        chosen = planner
+    problem = Problem(map, start, target, CornerCutting[corner_cutting.upper()])
+    return plan_once(problem, chosen, seed)

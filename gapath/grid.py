@@ -1,0 +1,178 @@
+"""Grid maps: weights in [0, 1] on square fields (KG18 Sec. 2).
+
+The one rule of coordinates: a field is written (x, y), x to the right, y down, (0, 0)
+top left; arrays are indexed ``[y, x]``. Metres (ROS) point up: see `GridMap.to_metres`.
+"""
+
+import hashlib
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gapath.errors import InputError, require
+
+Field: TypeAlias = tuple[int, int]
+"""A field of the map as (x, y)."""
+
+Table: TypeAlias = NDArray[np.int32]
+"""What kernels read, (rows, cols): the weight in units of 1 / `SCALE`, or `OBSTACLE`."""
+
+SCALE = 65536
+"""Fixed point: a cost of 1.0 is 65536, so weights are rounded to 1 / 65536."""
+
+OBSTACLE = 1 << 24
+"""A table entry of a field that cannot be passed: above every weight's."""
+
+MAX_FIELDS = 1 << 26
+"""Fields of the largest map that is accepted (8192 x 8192)."""
+
+MAX_SIDE = 1 << 16
+"""Longest side of a map that is accepted."""
+
+
+@dataclass(frozen=True, eq=False)
+class GridMap:
+    """A map of square fields, each with the cost of passing it.
+
+    Parameters
+    ----------
+    name : str
+        Short name, used in tables and file names.
+    weights : (rows, cols) float64
+        Cost of passing each field: 0 preferred, 0.5 the usual base, 1 an obstacle.
+    start, target : (x, y), optional
+        The fields that the map's author means a robot to go from and to.
+    instance : int
+        Number within a generated class; 0 is the canonical one.
+    source : str
+        Where the map comes from: "reconstructed", a format's name, or "array".
+    resolution : float
+        Side of a field in metres.
+    origin : (x, y, yaw)
+        Pose of the lower left corner of the map, in metres and radians.
+
+    Raises
+    ------
+    InputError
+        If the array is not two-dimensional, is empty or too large, or has a weight that
+        is not a finite number in [0, 1].
+    """
+
+    name: str
+    weights: NDArray[np.float64] = field(repr=False)
+    start: Field | None = None
+    target: Field | None = None
+    instance: int = 0
+    source: str = "array"
+    resolution: float = 1.0
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        where = f"map {self.name}"
+        try:
+            weights = np.array(self.weights, dtype=np.float64, order="C")
+        except (TypeError, ValueError) as error:
+            raise InputError(where, type(self.weights).__name__, "an array of numbers") from error
+        require(
+            weights.ndim == 2 and weights.size > 0,
+            where,
+            f"shape {weights.shape}",
+            "a non-empty array of (rows, cols)",
+        )
+        require(
+            weights.size <= MAX_FIELDS and max(weights.shape) <= MAX_SIDE,
+            where,
+            f"shape {weights.shape}",
+            f"at most {MAX_FIELDS} fields, {MAX_SIDE} a side",
+        )
+        wrong = ~((weights >= 0.0) & (weights <= 1.0))  # also true for NaN
+        if wrong.any():
+            y, x = np.argwhere(wrong)[0]
+            raise InputError(
+                f"{where}, field ({x}, {y})", weights[y, x], "a finite weight in [0, 1]"
+            )
+        require(
+            math.isfinite(self.resolution) and self.resolution > 0,
+            f"{where}, resolution",
+            self.resolution,
+            "a positive number of metres",
+        )
+        require(
+            all(math.isfinite(v) for v in self.origin),
+            f"{where}, origin",
+            self.origin,
+            "three finite numbers (metres, metres, radians)",
+        )
+        weights.setflags(write=False)
+        object.__setattr__(self, "weights", weights)
+
+    @property
+    def rows(self) -> int:
+        """Number of fields from top to bottom."""
+        return int(self.weights.shape[0])
+
+    @property
+    def cols(self) -> int:
+        """Number of fields from left to right."""
+        return int(self.weights.shape[1])
+
+    @cached_property
+    def table(self) -> Table:
+        """The map as kernels read it, (rows, cols) int32, built once per map."""
+        table = np.floor(self.weights * SCALE + 0.5).astype(np.int32)
+        table[self.obstacles] = OBSTACLE
+        table.setflags(write=False)
+        return table
+
+    @cached_property
+    def obstacles(self) -> NDArray[np.bool_]:
+        """True where a field cannot be passed, (rows, cols)."""
+        return np.equal(self.weights, 1.0)
+
+    @cached_property
+    def _lightest(self) -> NDArray[np.int64]:
+        """Indices of the three lightest fields, flat."""
+        flat = self.table.ravel()
+        return np.argpartition(flat, 2)[:3] if flat.size > 3 else np.arange(flat.size)
+
+    def least_weight(self, start: Field, target: Field) -> int:
+        """Give the least table entry of any field but start and target (0 if none is left)."""
+        ends = (start[1] * self.cols + start[0], target[1] * self.cols + target[0])
+        entries = [int(self.table.flat[i]) for i in self._lightest if i not in ends]
+        return min(entries, default=0)
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of what a planner and a log see of the map: weights, shape, scale and place."""
+        text = f"{self.rows} {self.cols} {self.resolution!r} {self.origin!r} "
+        return hashlib.sha256(text.encode() + self.weights.astype("<f8").tobytes()).hexdigest()
+
+    def contains(self, place: Field) -> bool:
+        """Tell whether a field (x, y) lies on the map."""
+        return 0 <= place[0] < self.cols and 0 <= place[1] < self.rows
+
+    def to_metres(self, fields: NDArray[np.int32]) -> NDArray[np.float64]:
+        """Give the centres of fields in the map's metric frame, which has y up.
+
+        Parameters
+        ----------
+        fields : (n, 2) int32
+            Fields as (x, y).
+
+        Returns
+        -------
+        (n, 2) float64
+            Metres in the frame that `origin` is given in (REP 103, REP 105).
+        """
+        right = (fields[:, 0] + 0.5) * self.resolution
+        up = (self.rows - fields[:, 1] - 0.5) * self.resolution
+        x, y, yaw = self.origin
+        cos, sin = math.cos(yaw), math.sin(yaw)
+        metres = np.empty(fields.shape)
+        metres[:, 0] = x + right * cos - up * sin
+        metres[:, 1] = y + right * sin + up * cos
+        return metres

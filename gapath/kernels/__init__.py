@@ -1,0 +1,1 @@
+"""Jitted free functions on arrays, by topic."""

@@ -1,0 +1,94 @@
+"""What every map reader starts from: a file, and a field that the user names."""
+
+from pathlib import Path
+
+from gapath.errors import InputError, require
+from gapath.grid import MAX_FIELDS, Field
+
+MAX_BYTES = 4 * MAX_FIELDS + (1 << 20)
+"""Bytes of the largest map file that is opened: four channels a field, and a header."""
+
+
+def read_bytes(path: str | Path, limit: int = MAX_BYTES) -> bytes:
+    """Read a whole file.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file, relative to the current folder.
+    limit : int
+        Bytes that it may have.
+
+    Returns
+    -------
+    bytes
+        Its content.
+
+    Raises
+    ------
+    InputError
+        If it is missing, not a regular file (a pipe would hang), empty, too large or
+        unreadable.
+    """
+    try:
+        require(Path(path).exists(), path, "no such file", "an existing file")
+        require(Path(path).is_file(), path, "not a regular file", "a file")
+        size = Path(path).stat().st_size
+        require(0 < size <= limit, path, f"{size} bytes", f"between 1 and {limit} bytes")
+        return Path(path).read_bytes()
+    except OSError as error:
+        raise InputError(path, error.strerror, "a file that can be read") from error
+
+
+def read_text(path: str | Path, limit: int = MAX_BYTES) -> str:
+    r"""Read a whole text file, without byte order mark, each line ended by ``\n``.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file, relative to the current folder.
+    limit : int
+        Bytes that it may have.
+
+    Returns
+    -------
+    str
+        Its content.
+
+    Raises
+    ------
+    InputError
+        As `read_bytes`, and if it is not UTF-8.
+    """
+    try:
+        text = read_bytes(path, limit).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        found = f"byte 0x{error.object[error.start]:02x} at position {error.start}"
+        raise InputError(path, found, "text in UTF-8") from error
+    return text.replace("\r\n", "\n")
+
+
+def as_field(where: str, value: list[int] | None) -> Field | None:
+    """Turn a setting such as ``map.start`` into a field.
+
+    Parameters
+    ----------
+    where : str
+        Name of the setting.
+    value : list of int, optional
+        What it was set to.
+
+    Returns
+    -------
+    (x, y), optional
+        The field, or None where nothing was set.
+
+    Raises
+    ------
+    InputError
+        If there are not two numbers.
+    """
+    if value is None:
+        return None
+    require(len(value) == 2, where, list(value), "two integers [x, y]")
+    return value[0], value[1]

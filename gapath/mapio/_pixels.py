@@ -1,0 +1,158 @@
+"""Grey pixels of an image file: the only place that decodes images."""
+
+import io
+import re
+import struct
+import zlib
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gapath.errors import InputError, require
+from gapath.grid import MAX_FIELDS
+from gapath.mapio._input import read_bytes
+
+PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
+PNG_CHANNELS = {0: 1, 2: 3, 4: 2, 6: 4}
+"""Channels by colour type: grey, RGB, grey and alpha, RGB and alpha."""
+NETPBM_CHANNELS = {b"P5": 1, b"P6": 3}
+NETPBM_HEADER = re.compile(rb"(P[56])" + 3 * rb"(?:\s|#[^\r\n]*[\r\n])+(\d{1,9})" + rb"\s")
+
+Channels = NDArray[np.uint8]
+"""Samples as they are in the file, (rows, cols, channels)."""
+
+
+class Pixels(NamedTuple):
+    """An 8-bit grey image, row 0 at the top."""
+
+    grey: NDArray[np.uint8]
+    """(rows, cols) 0 black, 255 white."""
+    alpha: NDArray[np.uint8] | None
+    """(rows, cols) 0 transparent, 255 opaque; None where the file has no alpha channel."""
+
+
+def read_pixels(path: str | Path) -> Pixels:
+    """Read a PNG or a binary PGM or PPM file.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file, relative to the current folder.
+
+    Returns
+    -------
+    Pixels
+        Its pixels. Colours are accepted where red, green and blue agree.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, damaged, truncated, larger than `MAX_FIELDS` pixels, of
+        another format, not of 8 bits or fewer a sample, has a palette or is coloured.
+    """
+    data = read_bytes(path)
+    if data.startswith(PNG_SIGNATURE):
+        channels = _read_png(path, data)
+    elif data[:2] in NETPBM_CHANNELS:
+        channels = _read_netpbm(path, data)
+    else:
+        raise InputError(
+            path, f"a file that begins with {data[:8]!r}", "a PNG, or a binary PGM (P5) or PPM (P6)"
+        )
+    has_alpha = channels.shape[2] in (2, 4)
+    grey = channels[:, :, 0]
+    if channels.shape[2] >= 3:
+        coloured = (channels[:, :, 1] != grey) | (channels[:, :, 2] != grey)
+        if coloured.any():
+            y, x = np.argwhere(coloured)[0]
+            raise InputError(
+                f"{path}, pixel ({x}, {y})",
+                f"RGB {channels[y, x, :3].tolist()}",
+                "a shade of grey: equal red, green and blue",
+            )
+    return Pixels(grey, channels[:, :, -1] if has_alpha else None)
+
+
+def _check_size(path: str | Path, cols: int, rows: int) -> None:
+    require(
+        cols > 0 and rows > 0 and cols * rows <= MAX_FIELDS,
+        path,
+        f"an image of {cols} x {rows} pixels",
+        f"1 to {MAX_FIELDS} pixels",
+    )
+
+
+def _check_depth(path: str | Path, bits: int) -> None:
+    require(bits <= 8, path, f"{bits} bits a sample", "an 8-bit grey image")
+
+
+def _read_netpbm(path: str | Path, data: bytes) -> Channels:
+    header = NETPBM_HEADER.match(data)
+    if header is None:
+        raise InputError(path, f"the header {data[:20]!r}", "width, height and largest value")
+    cols, rows, largest = (int(number) for number in header.groups()[1:])
+    _check_size(path, cols, rows)
+    _check_depth(path, largest.bit_length())
+    require(largest == 255, path, f"largest value {largest}", "an image of values 0 to 255")
+    raster = data[header.end() :]
+    shape = rows, cols, NETPBM_CHANNELS[header.group(1)]
+    # One newline more than the raster: some map savers end their file like a text.
+    if len(raster) == np.prod(shape) + 1 and raster.endswith(b"\n"):
+        raster = raster[:-1]
+    require(
+        len(raster) == np.prod(shape),
+        path,
+        f"a raster of {len(raster)} bytes",
+        f"{np.prod(shape)} bytes for {cols} x {rows} pixels",
+    )
+    return np.frombuffer(raster, dtype=np.uint8).reshape(shape)
+
+
+def _read_png(path: str | Path, data: bytes) -> Channels:
+    # The header, read before Pillow is: nothing is decoded that is too large or of a
+    # kind that Pillow would reduce to 8 bits without a word.
+    require(len(data) > 28 and data[12:16] == b"IHDR", path, "no image header", "a whole PNG")
+    cols, rows, bits, colour, interlaced = struct.unpack(">IIBBxxB", data[16:29])
+    _check_size(path, cols, rows)
+    _check_depth(path, bits)
+    require(colour != 3, path, "an image with a palette", "a grey image")
+    require(colour in PNG_CHANNELS, path, f"colour type {colour}", "a grey image")
+    require(not interlaced, path, "an interlaced PNG", "a PNG that is not interlaced")
+
+    from PIL import Image  # here: planning on other maps does not wait for it
+
+    try:
+        with Image.open(io.BytesIO(data), formats=["PNG"]) as image:
+            image.verify()  # every chunk whole, each checksum right
+        _check_png_raster(path, data, rows, (cols * bits * PNG_CHANNELS[colour] + 7) // 8)
+        with Image.open(io.BytesIO(data), formats=["PNG"]) as image:
+            image.load()
+            require(
+                "transparency" not in image.info,
+                path,
+                "an image with a transparent colour",
+                "an image without",
+            )
+            pixels = image.convert("L") if image.mode == "1" else image
+            return np.asarray(pixels).reshape(rows, cols, PNG_CHANNELS[colour])
+    except InputError:
+        raise
+    except Exception as error:  # Pillow lets zlib's, struct's and its own errors through
+        raise InputError(path, "a damaged or truncated PNG", "a whole PNG") from error
+
+
+def _check_png_raster(path: str | Path, data: bytes, rows: int, row_bytes: int) -> None:
+    """Refuse image data of a wrong length, which Pillow fills up with black."""
+    compressed, place = [], len(PNG_SIGNATURE)
+    while place < len(data):
+        length, kind = struct.unpack(">I4s", data[place : place + 8])
+        if kind == b"IDAT":
+            compressed.append(data[place + 8 : place + 8 + length])
+        if kind == b"IEND":
+            break
+        place += length + 12
+    expected = rows * (1 + row_bytes)  # one byte before each row names its filter
+    found = len(zlib.decompressobj().decompress(b"".join(compressed), expected + 1))
+    require(found == expected, path, "image data of a wrong length", f"{rows} rows of pixels")

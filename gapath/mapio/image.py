@@ -1,0 +1,66 @@
+"""Weighted maps as grey images, PNG or binary PGM/PPM (KG18 Sec. 2's black and white).
+
+A pixel v becomes the weight v / 256, but 255 becomes 1: black 0 is the preferred field
+0.0, 128 the base value 0.5 exactly, white 255 the obstacle 1.0, and 254 the dearest field
+that can be passed. Row 0 is the top.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from gapath.errors import require
+from gapath.grid import GridMap
+from gapath.mapio._input import as_field
+from gapath.mapio._pixels import read_pixels
+
+SUFFIXES: tuple[str, ...] = (".png", ".pgm", ".ppm")
+
+WEIGHTS = np.append(np.arange(255) / 256, 1.0)
+"""Weight of each pixel value, (256,)."""
+
+
+@dataclass(frozen=True)
+class Reader:
+    """Reads the pixels of an image as weights.
+
+    Parameters
+    ----------
+    path : str
+        The image: 8-bit grey without alpha.
+    start, target : [x, y], optional
+        Fields to go from and to.
+    """
+
+    path: str
+    start: list[int] | None
+    target: list[int] | None
+
+    def read(self) -> GridMap:
+        """Read the map.
+
+        Returns
+        -------
+        GridMap
+            The map, named after the file.
+
+        Raises
+        ------
+        InputError
+            If the file is not such an image (`gapath.mapio._pixels.read_pixels`).
+        """
+        pixels = read_pixels(self.path)
+        require(
+            pixels.alpha is None,
+            self.path,
+            "an image with an alpha channel",
+            "an 8-bit grey image without alpha",
+        )
+        return GridMap(
+            name=Path(self.path).stem,
+            weights=WEIGHTS[pixels.grey],
+            start=as_field("map.start", self.start),
+            target=as_field("map.target", self.target),
+            source="image",
+        )

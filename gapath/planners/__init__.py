@@ -1,0 +1,1 @@
+"""Planners: one module each, with one YAML file each in ``conf/planner``."""

@@ -1,0 +1,189 @@
+"""The genetic algorithm of Kwasniewski & Gosiewski 2018 (KG18), DOI 10.2478/ama-2018-0024.
+
+A chromosome is the control points of a B-spline of degree 2. A few points of the curve are
+rounded to fields and joined by straight lines; the fitness is the sum of the weights of the
+fields on them, eq. (5). The best quarter survives and breeds.
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property, partial
+
+import numpy as np
+
+from gapath.errors import require
+from gapath.grid import SCALE
+from gapath.kernels.bspline import Basis, basis, way_points
+from gapath.kernels.evolution import EvolutionResult, EvolutionSettings, evolve
+from gapath.kernels.fitness import KEY_BITS, ONE_OBSTACLE
+from gapath.kernels.population import Ends, InitialPopulation
+from gapath.kernels.raster import polyline
+from gapath.problem import Evolution, Plan, PlanStatus, Problem
+from gapath.rng import Stream, probability_threshold
+
+MAX_BYTES = 1 << 30
+
+
+@dataclass(frozen=True)
+class Planner:
+    """KG18's planner; ``conf/planner/bspline_ga.yaml`` says where each value comes from.
+
+    Parameters
+    ----------
+    population : int
+        Individuals, at least 4.
+    control_points : int
+        k, control points of the B-spline with start and target, at least 3.
+    min_epochs, max_epochs : int
+        Stop at a feasible path, not before and not after; epoch 1 is the initial population.
+    way_points : int
+        Points of the curve that are joined by straight lines, at least 2.
+    sampling : str
+        "curve": that many way points of the whole curve; "span": of each knot span.
+    mixing : float
+        D of eq. (6), the fitter parent's share, in [0, 1].
+    mutation_probability : float
+        For each gene.
+    line_jitter : int
+        Largest change of a coordinate of the straight line, in fields.
+    line_jitter_probability : float
+        For each of those coordinates.
+    neighbourhood : int
+        Reach of the points around the start, in fields.
+    margin : int
+        Distance from the border of the points all over the map, in fields.
+    clip_to_map : bool
+        Move genes outside the map to its border.
+    vln : float
+        What an obstacle field counts in the reported fitness.
+    """
+
+    population: int
+    control_points: int
+    min_epochs: int
+    max_epochs: int
+    way_points: int
+    sampling: str
+    mixing: float
+    mutation_probability: float
+    line_jitter: int
+    line_jitter_probability: float
+    neighbourhood: int
+    margin: int
+    clip_to_map: bool
+    vln: float
+
+    def __post_init__(self) -> None:
+        def check(name: str, good: bool, expected: str) -> None:
+            require(good, f"planner.{name}", getattr(self, name), expected)
+
+        check("population", 4 <= self.population <= 10**6, "an integer from 4 to 1000000")
+        check("control_points", 3 <= self.control_points <= 32, "an integer from 3 to 32")
+        check("max_epochs", 1 <= self.max_epochs <= 10**6, "an integer from 1 to 1000000")
+        check(
+            "min_epochs",
+            1 <= self.min_epochs <= self.max_epochs,
+            f"an integer from 1 to max_epochs, {self.max_epochs}",
+        )
+        check("way_points", 2 <= self.way_points <= 64, "an integer from 2 to 64")
+        check("sampling", self.sampling in ("curve", "span"), '"curve" or "span"')
+        for name in ("mixing", "mutation_probability", "line_jitter_probability"):
+            check(name, 0 <= getattr(self, name) <= 1, "a number in [0, 1]")
+        for name in ("line_jitter", "neighbourhood", "margin"):
+            check(name, 0 <= getattr(self, name) <= 65536, "an integer from 0 to 65536")
+        check("vln", 1 <= self.vln < float("inf"), "a finite number above every weight")
+        genes = 2 * self.control_points
+        needed = (genes * (2 * self.population + self.max_epochs) * 4) + 8 * (
+            genes * self.population + 3 * self.max_epochs
+        )
+        require(
+            needed <= MAX_BYTES,
+            "planner.population, planner.max_epochs",
+            f"{self.population}, {self.max_epochs}: {needed / 2**30:.1f} GiB",
+            "settings that need at most 1 GiB",
+        )
+
+    @cached_property
+    def _basis(self) -> Basis:
+        return basis(self.control_points, self.way_points, self.sampling == "span")
+
+    @cached_property
+    def _settings(self) -> EvolutionSettings:
+        mixing = Fraction(str(self.mixing))  # 0.8 is meant as 4/5, not as its nearest double
+        if mixing.denominator > 10**6:
+            mixing = mixing.limit_denominator(10**6)
+        return EvolutionSettings(
+            self.population,
+            self.control_points,
+            self.min_epochs,
+            self.max_epochs,
+            (mixing.numerator, mixing.denominator),
+            probability_threshold(self.mutation_probability),
+            self.clip_to_map,
+            InitialPopulation(
+                self.line_jitter,
+                probability_threshold(self.line_jitter_probability),
+                self.neighbourhood,
+                self.margin,
+            ),
+        )
+
+    def plan(self, problem: Problem, stream: Stream) -> Plan:
+        """Run the genetic algorithm once.
+
+        Parameters
+        ----------
+        problem : Problem
+            Start and target on a known map.
+        stream : (4,) uint64
+            A random stream, advanced in place.
+
+        Returns
+        -------
+        Plan
+            FOUND with the best path, or NOT_FOUND with the best fitness.
+
+        Raises
+        ------
+        InputError
+            If the margin leaves nothing of the map.
+        """
+        grid = problem.map
+        require(
+            2 * self.margin < min(grid.rows, grid.cols),
+            "planner.margin",
+            self.margin,
+            f"less than half the smaller side of the map, {min(grid.rows, grid.cols)}",
+        )
+        result = evolve(
+            grid.table,
+            Ends(*problem.start, *problem.target),
+            int(problem.corner_cutting),
+            self._settings,
+            self._basis,
+            stream,
+        )
+        key = int(result.keys[-1])
+        found = key < ONE_OBSTACLE
+        return Plan(
+            PlanStatus.FOUND if found else PlanStatus.NOT_FOUND,
+            path=self._path(result) if found else np.empty((0, 2), dtype=np.int32),
+            cost=(key >> KEY_BITS) * self.vln + (key & (ONE_OBSTACLE - 1)) / SCALE,
+            epochs=len(result.keys),
+            evaluations=int(result.evaluations),
+            trace=partial(self._evolution, result),
+        )
+
+    def _path(self, result: EvolutionResult) -> np.ndarray[tuple[int, ...], np.dtype[np.int32]]:
+        return polyline(way_points(result.chromosomes[-1:], self._basis)[0])
+
+    def _evolution(self, result: EvolutionResult) -> Evolution:
+        obstacles = result.keys >> KEY_BITS
+        cost = result.keys & (ONE_OBSTACLE - 1)
+        return Evolution(
+            best=obstacles * self.vln + cost / SCALE,
+            mean=(result.obstacle_sums * self.vln + result.cost_sums / SCALE) / self.population,
+            chromosomes=result.chromosomes,
+            way_points=way_points(result.chromosomes, self._basis),
+            genotype="control_points",
+        )

@@ -1,0 +1,196 @@
+"""A planning problem, a plan, and what every planner must offer."""
+
+import html
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from enum import IntEnum
+from functools import cached_property
+from typing import NamedTuple, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gapath.errors import require
+from gapath.grid import Field, GridMap
+from gapath.rng import Stream
+
+
+class CornerCutting(IntEnum):
+    """Whether a diagonal step may pass between or beside obstacles.
+
+    A field outside the map counts as an obstacle here too.
+    """
+
+    ALLOW = 0
+    """Every diagonal step between free fields is allowed (KG18 sets no rule)."""
+    ONE_SIDE = 1
+    """Not if both orthogonal neighbours are obstacles."""
+    FORBID = 2
+    """Not if either orthogonal neighbour is an obstacle (MovingAI's rule)."""
+
+
+class PlanStatus(IntEnum):
+    """How a planning query ended."""
+
+    FOUND = 0
+    NOT_FOUND = 1
+    INFEASIBLE = 2
+
+    @property
+    def sentence(self) -> str:
+        """The status in words for people."""
+        return (
+            "a feasible path was found",
+            "the planner stopped without a feasible path",
+            "no path exists: the target cannot be reached from the start",
+        )[self]
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """One planning query: from start to target on a known map.
+
+    Parameters
+    ----------
+    map : GridMap
+        The map.
+    start, target : (x, y)
+        Free fields on the map.
+    corner_cutting : CornerCutting
+        The rule for diagonal steps, the same for every planner.
+
+    Raises
+    ------
+    InputError
+        If start or target is outside the map or on an obstacle.
+    """
+
+    map: GridMap
+    start: Field
+    target: Field
+    corner_cutting: CornerCutting = CornerCutting.ALLOW
+
+    def __post_init__(self) -> None:
+        for name in ("start", "target"):
+            place = getattr(self, name)
+            pair = np.shape(place) == (2,) and all(float(v).is_integer() for v in place)
+            require(pair, f"map.{name}", place, "two integers [x, y]")
+            place = (int(place[0]), int(place[1]))
+            object.__setattr__(self, name, place)
+            require(
+                self.map.contains(place),
+                f"map.{name}",
+                list(place),
+                f"a field [x, y] with 0 <= x < {self.map.cols}, 0 <= y < {self.map.rows}",
+            )
+            require(
+                not self.map.obstacles[place[1], place[0]],
+                f"map.{name}",
+                f"{list(place)}, an obstacle",
+                "a free field",
+            )
+
+
+class Evolution(NamedTuple):
+    """What a genetic algorithm did, epoch by epoch (E epochs).
+
+    A best path is given by its way points, which straight lines join
+    (`gapath.kernels.raster.polyline`); rows are padded with the last way point.
+    """
+
+    best: NDArray[np.float64]
+    """(E,) fitness of the best individual; eq. (5) of KG18 for its planner."""
+    mean: NDArray[np.float64]
+    """(E,) mean fitness of the population."""
+    chromosomes: NDArray[np.int32]
+    """(E, genes) the best individual."""
+    way_points: NDArray[np.int32]
+    """(E, n, 2) the best individual's way points as (x, y)."""
+    genotype: str
+    """What the genes mean, e.g. "control_points": x1, y1, ..., xk, yk."""
+
+
+def _no_path() -> NDArray[np.int32]:
+    return np.empty((0, 2), dtype=np.int32)
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """A planner's answer.
+
+    Parameters
+    ----------
+    status : PlanStatus
+        How the query ended.
+    path : (n, 2) int32
+        Fields (x, y) from start to target, each a neighbour of the one before; empty
+        unless the status is FOUND.
+    cost : float
+        KG18 eq. (5): the sum of the weights of the path's fields, start included; for a
+        genetic algorithm without success its best fitness, obstacles counted as VLN;
+        infinite where there is nothing to sum.
+    epochs, evaluations : int
+        Epochs of a genetic algorithm, and chromosomes whose fitness it computed.
+    expansions : int
+        Fields that a graph search expanded.
+    trace : callable, optional
+        Computes the history of a genetic algorithm; called only if somebody wants it.
+    """
+
+    status: PlanStatus
+    path: NDArray[np.int32] = field(default_factory=_no_path, repr=False)
+    cost: float = math.inf
+    epochs: int = 0
+    evaluations: int = 0
+    expansions: int = 0
+    trace: Callable[[], Evolution] | None = field(default=None, repr=False)
+
+    @cached_property
+    def evolution(self) -> Evolution | None:
+        """The history of a genetic algorithm, epoch by epoch; None for other planners."""
+        return self.trace() if self.trace else None
+
+    @property
+    def feasible(self) -> bool:
+        """True if the path joins start and target without an obstacle."""
+        return self.status is PlanStatus.FOUND
+
+    def _repr_html_(self) -> str:
+        rows = {
+            "status": f"{self.status.name.lower()}: {self.status.sentence}",
+            "cost": f"{self.cost:g}",
+            "fields": len(self.path),
+            "epochs": self.epochs,
+            "evaluations": self.evaluations,
+            "expansions": self.expansions,
+        }
+        cells = "".join(
+            f"<tr><th>{key}</th><td>{html.escape(str(value))}</td></tr>"
+            for key, value in rows.items()
+        )
+        return f"<table><caption>gapath.Plan</caption>{cells}</table>"
+
+
+@runtime_checkable
+class Planner(Protocol):
+    """What a module of `gapath.planners` offers under the name ``Planner``.
+
+    A frozen dataclass whose fields are the settings of its YAML file in ``conf/planner``.
+    """
+
+    def plan(self, problem: Problem, stream: Stream) -> Plan:
+        """Plan a path; every random number comes from the stream.
+
+        Parameters
+        ----------
+        problem : Problem
+            Start and target on a known map.
+        stream : (4,) uint64
+            A random stream, advanced in place (`gapath.rng.stream`).
+
+        Returns
+        -------
+        Plan
+            The answer, also when nothing was found.
+        """

@@ -1,0 +1,1 @@
+"""Recorders: one module each, with one YAML file each in ``conf/recorder``."""

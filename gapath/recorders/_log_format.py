@@ -1,0 +1,88 @@
+"""What a log looks like: its limits, topics and message definitions.
+
+Standard messages are what other people's viewers draw; messages of our own package
+``gapath_msgs`` hold the numbers exactly, and only they are read back.
+"""
+
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+PROFILE, LIBRARY = "ros2", "gapath"
+"""What the file's header says: its conventions, and who wrote it."""
+
+MAX_CHUNK = 1 << 28
+"""Bytes that one chunk may inflate to: 256 MiB, a run of a million epochs."""
+
+MAX_LOG = 1 << 34
+"""Bytes that all chunks of a log may inflate to: 16 GiB."""
+
+NS_PER_STEP = 1_000_000
+"""Log time is the step index: a step counts as one millisecond."""
+
+FRAME = "map"
+"""The metric frame of every standard message (REP 105)."""
+
+_OWN = {
+    "gapath_msgs/msg/TrialStart": """\
+# A trial begins. Its random streams are keyed by (seed, trial, call).
+uint64 trial
+uint64 seed
+string planner
+string settings           # the run's resolved configuration, YAML
+""",
+    "gapath_msgs/msg/GaRun": """\
+# A genetic algorithm ran: one row an epoch, rows one after another.
+uint64 trial
+uint64 call               # number of this run within its trial
+uint32 genes              # columns of chromosomes
+uint32 way_points_count   # way points in a row of way_points
+int32[] chromosomes       # the best individual
+int32[] way_points        # of the best individual: x, y, x, y, ... [fields]
+float64[] best            # fitness of the best individual
+float64[] mean            # mean fitness of the population
+string genotype           # what the genes mean
+""",
+    "gapath_msgs/msg/Result": """\
+# A trial ended.
+uint8 FOUND=0
+uint8 NOT_FOUND=1
+uint8 INFEASIBLE=2
+uint64 trial
+uint64 epochs
+uint64 evaluations        # chromosomes whose fitness was computed
+uint64 expansions         # fields that a graph search expanded
+float64 cost              # sum of the weights of the path's fields
+uint8 status
+bool feasible             # status is FOUND
+int32[] path              # x, y, x, y, ... [fields]; empty without a path
+""",
+    "gapath_msgs/msg/RunEnd": """\
+# The run was not interrupted.
+uint64 trials
+uint64 found              # trials that found a path
+""",
+}
+
+TOPICS = {
+    "/map": "nav_msgs/msg/OccupancyGrid",
+    "/start": "geometry_msgs/msg/PoseStamped",
+    "/target": "geometry_msgs/msg/PoseStamped",
+    "/optimal_path": "nav_msgs/msg/Path",
+    "/path": "nav_msgs/msg/Path",
+    "/log": "rcl_interfaces/msg/Log",
+    "/trial_start": "gapath_msgs/msg/TrialStart",
+    "/ga_run": "gapath_msgs/msg/GaRun",
+    "/result": "gapath_msgs/msg/Result",
+    "/run_end": "gapath_msgs/msg/RunEnd",
+}
+"""Message type of every topic, in the order of the log's channels."""
+
+TYPES = get_typestore(Stores.ROS2_HUMBLE)
+for _name, _text in _OWN.items():
+    TYPES.register(get_types_from_msg(_text, _name))
+
+
+def schema(topic: str) -> bytes:
+    """Give the definition of a topic's messages, schema encoding ``ros2msg``."""
+    name = TOPICS[topic]
+    text = _OWN.get(name) or TYPES.generate_msgdef(name, ros_version=2)[0]
+    return text.encode()

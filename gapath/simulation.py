@@ -1,0 +1,93 @@
+"""Planning queries, one trial after another; the only place with a clock."""
+
+import math
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from gapath.graph import shortest_path
+from gapath.metrics import flaw
+from gapath.problem import Plan, Planner, PlanStatus, Problem
+from gapath.rng import stream
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A trial's answer and the time that it took.
+
+    Parameters
+    ----------
+    number : int
+        The trial's number within its run.
+    plan : Plan
+        The answer.
+    plan_time_s : float
+        Wall time of the planner's call in seconds; NaN if it was not called.
+    """
+
+    number: int
+    plan: Plan
+    plan_time_s: float
+
+
+def plan_once(problem: Problem, planner: Planner, seed: int, trial: int = 0) -> Plan:
+    """Plan with the random stream of one trial.
+
+    Parameters
+    ----------
+    problem : Problem
+        Start and target on a known map.
+    planner : Planner
+        Any planner.
+    seed, trial : int
+        Keys of the random stream.
+
+    Returns
+    -------
+    Plan
+        The answer; INFEASIBLE without calling the planner if the target is walled in.
+    """
+    if shortest_path(problem).status is PlanStatus.INFEASIBLE:
+        return Plan(PlanStatus.INFEASIBLE)
+    return planner.plan(problem, stream(seed, trial))
+
+
+def plan_trials(
+    problem: Problem, optimum: Plan, planner: Planner, seed: int, trials: int
+) -> Iterator[Trial]:
+    """Plan with the random streams (seed, 0) to (seed, trials - 1).
+
+    Parameters
+    ----------
+    problem : Problem
+        Start and target on a known map.
+    optimum : Plan
+        A shortest path; if there is none, the planner is not called.
+    planner : Planner
+        Any planner.
+    seed, trials : int
+        Keys of the random streams.
+
+    Yields
+    ------
+    Trial
+        In order. Each depends on the seed and its own number alone.
+
+    Raises
+    ------
+    RuntimeError
+        If the planner returns a path that is none.
+    """
+    if optimum.status is PlanStatus.INFEASIBLE:
+        for number in range(trials):
+            yield Trial(number, Plan(PlanStatus.INFEASIBLE), math.nan)
+        return
+    planner.plan(problem, stream(seed, 0))  # compiles the kernels before the clock runs
+    for number in range(trials):
+        random = stream(seed, number)
+        begin = time.perf_counter()
+        plan = planner.plan(problem, random)
+        seconds = time.perf_counter() - begin
+        if plan.feasible and (wrong := flaw(problem, plan.path)):
+            raise RuntimeError(f"the planner's path for seed {seed}, trial {number}: {wrong}")
+        yield Trial(number, plan, seconds)

@@ -1,0 +1,1 @@
+"""Maps that come with gapath; all of them are reconstructed."""

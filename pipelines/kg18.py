@@ -1,0 +1,113 @@
+"""What KG18 printed, and the names that its tables and figures use.
+
+KG18: Kwaśniewski & Gosiewski 2018, DOI 10.2478/ama-2018-0024.
+"""
+
+MAPS = ("kg18_test1", "kg18_test2", "kg18_test3", "kg18_test4")
+PLANNERS = ("ga1", "ga2", "ga3", "astar", "dijkstra")
+
+_LABELS = {
+    "ga1": "GA 1",
+    "ga2": "GA 2",
+    "ga3": "GA 3",
+    "astar": "A*",
+    "dijkstra": "Dijkstra",
+    **{name: f"Map {name[-1]}" for name in MAPS},
+}
+
+NOT_FOUND = None
+"""The paper's "N.F.": no path in 500 epochs."""
+
+SECONDS: dict[tuple[str, str], tuple[float | None, ...]] = {
+    ("kg18_test1", "dijkstra"): (43.06, 46.73, 44.02),
+    ("kg18_test2", "dijkstra"): (42.51, 42.37, 42.24),
+    ("kg18_test3", "dijkstra"): (42.29, 42.73, 47.78),
+    ("kg18_test4", "dijkstra"): (41.29, 39.54, 40.06),
+    ("kg18_test1", "ga1"): (0.03, 0.03, 0.03),
+    ("kg18_test2", "ga1"): (0.21, 0.10, 0.18),
+    ("kg18_test3", "ga1"): (1.10, 0.77, NOT_FOUND),
+    ("kg18_test4", "ga1"): (NOT_FOUND,) * 3,
+    ("kg18_test1", "ga2"): (0.07, 0.08, 0.07),
+    ("kg18_test2", "ga2"): (0.07, 0.14, 0.14),
+    ("kg18_test3", "ga2"): (3.42, 2.10, 0.77),
+    ("kg18_test4", "ga2"): (NOT_FOUND,) * 3,
+    ("kg18_test1", "ga3"): (0.08, 0.08, 0.08),
+    ("kg18_test2", "ga3"): (0.15, 0.15, 0.15),
+    ("kg18_test3", "ga3"): (0.59, 0.59, 1.37),
+    ("kg18_test4", "ga3"): (NOT_FOUND,) * 3,
+}
+"""KG18 Table 1: computing time of three executions, s."""
+
+
+def found_seconds(map_name: str, planner: str) -> list[float]:
+    """Give the paper's times of the executions that found a path, s; none if it has no such cell.
+
+    Parameters
+    ----------
+    map_name, planner : str
+        Names as in the configuration.
+
+    Returns
+    -------
+    list of float
+        In seconds.
+    """
+    return [time for time in SECONDS.get((map_name, planner), ()) if time is not None]
+
+
+def implied_epochs(map_name: str, planner: str) -> list[int]:
+    """Turn the paper's seconds into epochs.
+
+    On map 1 every execution took one epoch, so the shortest of them is the time of one:
+    0.03 s with a population of 40, 0.07 or 0.08 s with 100.
+
+    Parameters
+    ----------
+    map_name, planner : str
+        Names as in the configuration.
+
+    Returns
+    -------
+    list of int
+        Epochs of the executions that found a path; none for a planner without epochs.
+    """
+    if not planner.startswith("ga"):
+        return []
+    one = min(found_seconds("kg18_test1", planner), default=1.0)
+    return [round(time / one) for time in found_seconds(map_name, planner)]
+
+
+def label(name: str, source: str = "") -> str:
+    """Give the name that people read, with the mark that a reconstructed map must carry.
+
+    Parameters
+    ----------
+    name : str
+        Of a map or planner, as in the configuration.
+    source : str
+        The map's source.
+
+    Returns
+    -------
+    str
+        The paper's name, or the given one if the paper has none.
+    """
+    text = _LABELS.get(name, name)
+    return f"{text} (reconstructed)" if source == "reconstructed" else text
+
+
+def rank(name: str) -> tuple[int, str]:
+    """Give the place of a map or planner in the tables: the paper's order, then the alphabet's.
+
+    Parameters
+    ----------
+    name : str
+        Of a map or planner, as in the configuration.
+
+    Returns
+    -------
+    (int, str)
+        A key to sort by.
+    """
+    names = (*MAPS, *PLANNERS)
+    return (names.index(name) if name in names else len(names), name)

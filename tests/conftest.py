@@ -1,0 +1,31 @@
+"""Helpers that every test may use."""
+
+import os
+import sys
+from pathlib import Path
+
+import pytest
+from hypothesis import settings
+
+sys.path.insert(0, str(Path(__file__).parent))  # naive, strategies
+
+settings.register_profile("gapath", deadline=None, derandomize=True, max_examples=100)
+settings.load_profile("gapath")
+
+
+@pytest.fixture
+def data():
+    """The folder of real maps, which is not part of the project."""
+    place = Path(os.environ.get("GAPATH_DATA", Path(__file__).parents[2] / "shared" / "data"))
+    if not place.is_dir():
+        pytest.skip("no real maps: set GAPATH_DATA or put them into ../shared/data")
+    return place
+
+
+def pytest_addoption(parser):
+    parser.addoption("--update-golden", action="store_true", help="accept today's results")
+
+
+@pytest.fixture
+def update_golden(request):
+    return request.config.getoption("--update-golden")

@@ -1,0 +1,57 @@
+"""The B-spline against SciPy, against de Boor's algorithm, and by hand."""
+
+from fractions import Fraction
+
+import naive
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.interpolate import BSpline
+
+from gapath.kernels.bspline import basis, basis_functions, knots, way_points
+
+
+def test_knots_of_five_control_points_by_hand():
+    assert knots(5) == [0, 0, 0, Fraction(1, 3), Fraction(2, 3), 1, 1, 1]
+
+
+def test_three_control_points_are_a_parabola_by_hand():
+    """Without inner knots eq. (1) is Bernstein's: (1 - u)^2, 2 u (1 - u), u^2."""
+    assert basis_functions(3, Fraction(1, 4)) == [Fraction(9, 16), Fraction(6, 16), Fraction(1, 16)]
+
+
+def test_four_control_points_by_hand():
+    """At the inner knot 1/2 of four control points only the two middle ones count, half each."""
+    assert basis_functions(4, Fraction(1, 2)) == [0, Fraction(1, 2), Fraction(1, 2), 0]
+
+
+@pytest.mark.parametrize("control_points", [3, 4, 5, 6, 8, 12])
+@pytest.mark.parametrize("per_span", [False, True])
+def test_basis_equals_scipy(control_points, per_span):
+    ours = basis(control_points, 5, per_span)
+    values = ours.numerators / ours.denominators[:, None]
+    u = np.linspace(0, 1, len(values))
+    knot = np.array(knots(control_points), dtype=float)
+    curves = [BSpline(knot, row, 2) for row in np.eye(control_points)]
+    expected = np.stack([curve(u) for curve in curves], axis=1)
+    np.testing.assert_allclose(values, expected, atol=1e-12)
+    np.testing.assert_array_equal(ours.numerators.sum(axis=1), ours.denominators)
+
+
+@given(
+    st.lists(st.tuples(st.integers(-5000, 5000), st.integers(-5000, 5000)), min_size=3, max_size=9),
+    st.integers(2, 9),
+    st.booleans(),
+)
+def test_way_points_equal_the_naive_twin(points, samples, per_span):
+    chromosome = [c for point in points for c in point]
+    ours = way_points(np.array([chromosome], dtype=np.int32), basis(len(points), samples, per_span))
+    assert list(map(tuple, ours[0])) == naive.way_points(chromosome, samples, per_span)
+
+
+def test_the_curve_begins_and_ends_at_its_outer_control_points():
+    chromosome = np.array([[3, 7, 900, -20, 41, 5, 60, 8]], dtype=np.int32)
+    ours = way_points(chromosome, basis(4, 5, False))[0]
+    assert tuple(ours[0]) == (3, 7)
+    assert tuple(ours[-1]) == (60, 8)

@@ -1,0 +1,81 @@
+"""A* and Dijkstra against scikit-image, against Bellman's equation, and each other."""
+
+import math
+
+import naive
+import numpy as np
+import pytest
+from hypothesis import given
+from skimage.graph import MCP
+from strategies import problems
+
+from gapath.graph import shortest_path
+from gapath.grid import SCALE, GridMap
+from gapath.metrics import flaw, path_metrics
+from gapath.problem import CornerCutting, PlanStatus, Problem
+
+
+@given(problems(most=16))
+def test_astar_equals_dijkstra_and_bellman(problem):
+    rule = problem.corner_cutting.name.lower()
+    expected = naive.shortest_cost(problem.map.weights, problem.start, problem.target, rule)
+    for informed in (True, False):
+        plan = shortest_path(problem, informed)
+        assert plan.cost == expected
+        if math.isinf(expected):
+            assert plan.status is PlanStatus.INFEASIBLE
+        else:
+            assert flaw(problem, plan.path) is None
+
+
+@given(problems())
+def test_costs_equal_scikit_image(problem):
+    if problem.corner_cutting is not CornerCutting.ALLOW:
+        return
+    table = problem.map.table.astype(float)
+    start, target = problem.start[::-1], problem.target[::-1]
+    graph = MCP(np.where(problem.map.obstacles, -1, table + 1), fully_connected=True)
+    costs, _ = graph.find_costs([start], [target])
+    plan = shortest_path(problem)
+    if math.isinf(costs[target]):
+        assert plan.status is PlanStatus.INFEASIBLE
+        return
+    # MCP refuses weights of 0, so each field costs a unit more; compare with that map's optimum
+    again = GridMap("plus", np.where(problem.map.obstacles, 1.0, (table + 1) / SCALE))
+    exact = shortest_path(Problem(again, problem.start, problem.target))
+    assert round(exact.cost * SCALE) == costs[target] or problem.start == problem.target
+
+
+@given(problems(most=12))
+def test_lengths_are_least_too(problem):
+    plan = shortest_path(problem, by_length=True)
+    fewest = shortest_path(problem, informed=False, by_length=True)
+    distances = np.zeros_like(problem.map.weights)
+    if plan.feasible:
+        metrics = [path_metrics(problem.map, p.path, distances) for p in (plan, fewest)]
+        assert metrics[0].length == pytest.approx(metrics[1].length)
+        assert plan.cost == pytest.approx(metrics[0].cost)
+        assert flaw(problem, plan.path) is None
+
+
+def test_astar_settles_no_more_than_the_straight_line_where_nothing_is_in_the_way():
+    grid = GridMap("empty", np.full((50, 100), 0.5))
+    plan = shortest_path(Problem(grid, (0, 24), (98, 24)))
+    assert plan.expansions == 98
+    assert plan.cost == 99 * 0.5
+
+
+def test_a_light_target_costs_astar_no_ties():
+    """The estimate is least (distance - 1) + the target's own weight, here 0."""
+    weights = np.full((50, 100), 0.5)
+    weights[24, 0] = weights[24, 98] = 0.0
+    plan = shortest_path(Problem(GridMap("kg18", weights), (0, 24), (98, 24)))
+    assert plan.expansions == 98
+    assert plan.cost == 97 * 0.5
+
+
+def test_start_at_target():
+    grid = GridMap("dot", np.full((3, 3), 0.5))
+    plan = shortest_path(Problem(grid, (1, 1), (1, 1)))
+    assert plan.path.tolist() == [[1, 1]]
+    assert plan.cost == 0.5

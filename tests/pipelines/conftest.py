@@ -1,0 +1,174 @@
+import hashlib
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from gapath.events import Evolved, RunFinished, RunStarted, TrialFinished, TrialStarted
+from gapath.grid import GridMap
+from gapath.problem import Evolution, PlanStatus, Problem
+from gapath.recorders.mcap import Recorder
+
+MAPS = ("kg18_test1", "kg18_test2", "kg18_test3", "kg18_test4")
+PLANNERS = ("ga1", "ga2", "ga3", "astar", "dijkstra")
+SUCCESS = {"kg18_test3": {"ga1": 0.8, "ga2": 0.95}, "kg18_test4": dict.fromkeys(PLANNERS[:3], 0.0)}
+
+
+def make_map(name: str, instance: int = 0) -> GridMap:
+    weights = np.full((12, 24), 0.5)
+    weights[2 : 5 + int(name[-1]), 6 + instance % 3] = 1.0
+    weights[6:, 15] = 1.0
+    weights[6, 1] = weights[6, 22] = 0.0
+    return GridMap(name, weights, (1, 6), (22, 6), instance, "reconstructed")
+
+
+def make_path(shift: int) -> np.ndarray:
+    x = np.arange(1, 23)
+    dip = np.minimum(np.minimum(x - 1, 22 - x), 4 + shift % 2)
+    return np.stack([x, 6 - dip], axis=1).astype(np.int32)
+
+
+def make_trials(grid: GridMap, planner: str, experiment: str, seed: int, n: int) -> pd.DataFrame:
+    random = np.random.default_rng([seed, grid.instance, len(planner), int(grid.name[-1])])
+    is_ga = planner.startswith("ga")
+    feasible = random.random(n) < SUCCESS.get(grid.name, {}).get(planner, 1.0)
+    feasible = feasible if is_ga else np.ones(n, dtype=bool)
+    epochs = np.where(feasible, random.geometric(0.3 / int(grid.name[-1]), n), 60) * is_ga
+    cost = np.where(feasible, 11.5 + random.integers(0, 4, n), 200012.0)
+    return pd.DataFrame({
+        "experiment": experiment, "map": grid.name, "map_instance": grid.instance,
+        "map_source": grid.source, "width": grid.cols, "height": grid.rows,
+        "corner_cutting": "allow", "planner": planner, "seed": seed, "trial": np.arange(n),
+        "status": np.where(feasible, "found", "not_found"), "feasible": feasible, "cost": cost,
+        "optimal_cost": 11.0, "optimality_ratio": np.where(feasible, cost / 11.0, np.nan),
+        "length": 25.0, "turns": 4, "clearance": 1.0, "curvature": 0.1, "epochs": epochs,
+        "evaluations": epochs * 40, "expansions": 0 if is_ga else 200,
+        "plan_time_s": 1e-5 + 4e-6 * epochs,
+    })  # fmt: skip
+
+
+def write_log(folder: Path, grid: GridMap, trials: pd.DataFrame) -> None:
+    first = trials.iloc[0]
+    problem = Problem(grid, grid.start, grid.target)
+    recorder = Recorder(flush_every=100)
+    recorder.open(str(folder))
+    recorder.record(
+        RunStarted(
+            first["experiment"],
+            first["planner"],
+            problem,
+            int(first["seed"]),
+            len(trials),
+            "planner: {}\n",
+            {"gapath": "0"},
+            make_path(0),
+            11.0,
+        )
+    )
+    step = 0
+    for row in trials.itertuples():
+        recorder.record(TrialStarted(step, row.trial, row.seed))
+        if row.epochs:
+            best = np.linspace(1.2e6, row.cost, row.epochs)
+            points = np.zeros((row.epochs, 5, 2), dtype=np.int32)
+            evolution = Evolution(
+                best, best + 1, np.zeros((row.epochs, 8), dtype=np.int32), points, "control_points"
+            )
+            recorder.record(Evolved(step, row.trial, 0, evolution))
+        step += max(row.epochs, 1)
+        path = make_path(row.trial) if row.feasible else np.empty((0, 2), dtype=np.int32)
+        status = PlanStatus.FOUND if row.feasible else PlanStatus.NOT_FOUND
+        recorder.record(
+            TrialFinished(
+                step - 1,
+                row.trial,
+                status,
+                row.cost,
+                row.epochs,
+                row.evaluations,
+                row.expansions,
+                path,
+            )
+        )
+    recorder.record(RunFinished(step, len(trials), int(trials["feasible"].sum())))
+    recorder.close()
+
+
+def write_manifest(folder: Path, **changes: Any) -> None:
+    files = {
+        path.name: {"sha256": hashlib.sha256(path.read_bytes()).hexdigest(),
+                    "bytes": path.stat().st_size}
+        for path in sorted(folder.iterdir())
+        if path.name not in ("manifest.json", "status.json", "run.lock")
+    }  # fmt: skip
+    manifest = {
+        "key": folder.name,
+        "experiment": folder.parent.name,
+        "versions": {"gapath": "0"},
+        "command": f"gapath experiment={folder.parent.name}",
+        "files": files,
+    }
+    (folder / "manifest.json").write_text(json.dumps(manifest | changes))
+
+
+def write_status(
+    folder: Path, state: str, date: str = "2026-01-01T12:00:00", text: str = ""
+) -> None:
+    status = {"state": state, "started": date, "finished": date, "message": text}
+    (folder / "status.json").write_text(json.dumps(status))
+
+
+@pytest.fixture(scope="session")
+def make_run() -> Callable[..., Path]:
+    """Write one synthetic run folder."""
+
+    def make(
+        outputs: Path,
+        experiment: str,
+        map_name: str,
+        planner: str,
+        *,
+        instance: int = 0,
+        seed: int = 0,
+        n: int = 20,
+        log: bool = True,
+        date: str = "2026-01-01T12:00:00",
+        key: str = "",
+    ) -> Path:
+        grid = make_map(map_name, instance)
+        key = (
+            key
+            or hashlib.sha256(
+                f"{experiment} {map_name} {planner} {instance} {seed}".encode()
+            ).hexdigest()
+        )
+        folder = outputs / experiment / key[:16]
+        folder.mkdir(parents=True)
+        trials = make_trials(grid, planner, experiment, seed, n)
+        trials.to_parquet(folder / "trials.parquet")
+        (folder / "config.yaml").write_text("seed: 0\n")
+        if log:
+            write_log(folder, grid, trials)
+        write_manifest(
+            folder, map=map_name, map_instance=instance, planner=planner, seed=seed, trials=n
+        )
+        write_status(folder, "done", date)
+        return folder
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def outputs(tmp_path_factory: pytest.TempPathFactory, make_run: Callable[..., Path]) -> Path:
+    """Give the run folders of both KG18 experiments; read only."""
+    folder = tmp_path_factory.mktemp("outputs")
+    for name in MAPS:
+        for planner in PLANNERS:
+            make_run(folder, "table1", name, planner)
+            for instance in range(3):
+                make_run(folder, "classes", name, planner, instance=instance, n=4, log=False)
+    return folder

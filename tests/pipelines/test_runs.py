@@ -1,0 +1,176 @@
+import fcntl
+import json
+import shutil
+
+import pytest
+from gapath.pipelines.collect import collect
+from gapath.pipelines.runs import find_runs, summary
+
+from gapath.errors import InputError
+
+from .conftest import write_manifest, write_status
+
+
+@pytest.fixture
+def run(tmp_path, make_run):
+    return make_run(tmp_path, "table1", "kg18_test1", "ga1", n=5, log=False)
+
+
+def only(folder):
+    (found,) = find_runs(folder.parent.parent)
+    return found
+
+
+def test_a_whole_run(run):
+    found = only(run)
+    assert (found.state, found.fault, found.manifest["planner"]) == ("done", "", "ga1")
+    (row,) = summary([found])
+    assert row["key"] == run.name
+    assert (row["map"], row["trials"], row["date"]) == ("kg18_test1", "5", "2026-01-01 12:00")
+
+
+@pytest.mark.parametrize("state", ["queued", "failed", "interrupted"])
+def test_unfinished_runs_are_not_used_and_say_why(run, state):
+    write_status(run, state, text="Traceback:\n  ...\nOSError: disk full")
+    found = only(run)
+    assert (found.state, found.fault) == (state, f"{state}: OSError: disk full")
+    frame, skipped = collect(run.parent.parent)
+    assert frame.empty
+    assert skipped == [(f"table1/{run.name}", found.fault)]
+
+
+@pytest.mark.parametrize("lock_file", [True, False])
+def test_running_without_a_held_lock_is_interrupted(run, lock_file):
+    write_status(run, "running")
+    if lock_file:
+        (run / "run.lock").touch()
+    assert only(run).state == "interrupted"
+
+
+def test_running_with_a_held_lock_is_running(run):
+    write_status(run, "running")
+    with (run / "run.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        assert only(run).state == "running"
+    assert only(run).state == "interrupted"
+
+
+def test_no_status_is_unknown(run):
+    (run / "status.json").unlink()
+    assert only(run).state == "unknown"
+    assert "status.json" in only(run).fault
+
+
+def test_a_run_without_manifest_still_shows_in_the_list(run):
+    write_status(run, "running")
+    (run / "manifest.json").unlink()
+    (row,) = summary([only(run)])
+    assert (row["map"], row["planner"], row["state"]) == ("?", "?", "interrupted")
+
+
+def change(run, **changes):
+    manifest = json.loads((run / "manifest.json").read_text())
+    (run / "manifest.json").write_text(json.dumps(manifest | changes))
+
+
+@pytest.mark.parametrize(
+    ("spoil", "named"),
+    [
+        (lambda run: (run / "manifest.json").unlink(), "manifest.json: got no file"),
+        (lambda run: (run / "manifest.json").write_text("{"), "manifest.json"),
+        (lambda run: (run / "manifest.json").write_text("[1]"), "a JSON object"),
+        (lambda run: (run / "manifest.json").write_bytes(b"\xff\x00"), "manifest.json"),
+        (lambda run: (run / "manifest.json").write_text("[" * 100_000), "manifest.json"),
+        (lambda run: change(run, trials="5"), "manifest.json, trials"),
+        (lambda run: change(run, files={}), "trials.parquet"),
+        (lambda run: change(run, files={"trials.parquet": 5}), "trials.parquet"),
+        (lambda run: change(run, files={"trials.parquet": {}, "../x": {}}), "../x"),
+        (lambda run: (run / "config.yaml").unlink(), "config.yaml: got no file"),
+        (lambda run: (run / "config.yaml").write_text("longer than before"), "config.yaml"),
+    ],
+)
+def test_what_is_broken_is_named(run, spoil, named):
+    spoil(run)
+    assert named in only(run).fault
+
+
+def test_no_folder_and_no_runs(tmp_path):
+    with pytest.raises(InputError, match="no such folder"):
+        find_runs(tmp_path / "missing")
+    (tmp_path / "report" / "pictures").mkdir(parents=True)
+    with pytest.raises(InputError, match="no runs"):
+        find_runs(tmp_path)
+
+
+def test_all_trials_are_collected_failures_too(outputs):
+    frame, skipped = collect(outputs)
+    assert skipped == []
+    assert len(frame) == 4 * 5 * (20 + 3 * 4)
+    assert frame["key"].nunique() == 4 * 5 * 4
+    failed = frame[(frame["map"] == "kg18_test4") & frame["planner"].str.startswith("ga")]
+    assert len(failed) == 3 * (20 + 3 * 4)
+    assert not failed["feasible"].any()
+    assert failed["optimality_ratio"].isna().all()
+
+
+def test_the_newest_run_of_a_setting_counts_alone(tmp_path, make_run):
+    for key, date, n in [("b", "2026-01-02T00:00", 7), ("a", "2026-01-03T00:00", 3)]:
+        make_run(tmp_path, "table1", "kg18_test1", "ga1", n=n, log=False, date=date, key=key)
+    make_run(tmp_path, "table1", "kg18_test1", "ga1", n=4, seed=1, log=False)
+    frame, skipped = collect(tmp_path)
+    assert sorted(frame.groupby("seed").size()) == [3, 4]
+    assert [run for run, _ in skipped] == ["table1/b"]
+    assert "table1/a" in skipped[0].reason
+
+
+def test_a_broken_newer_run_does_not_hide_a_whole_older_one(tmp_path, make_run):
+    make_run(tmp_path, "table1", "kg18_test1", "ga1", log=False, key="old")
+    new = make_run(
+        tmp_path, "table1", "kg18_test1", "ga1", log=False, key="new", date="2026-02-01T00:00"
+    )
+    (new / "config.yaml").unlink()
+    frame, skipped = collect(tmp_path)
+    assert set(frame["key"]) == {"old"}
+    assert [run for run, _ in skipped] == ["table1/new"]
+
+
+def flip(path):
+    data = bytearray(path.read_bytes())
+    data[len(data) // 2] ^= 1
+    path.write_bytes(data)
+
+
+def test_flipped_rows_are_noticed(run):
+    flip(run / "trials.parquet")
+    _, skipped = collect(run.parent.parent)
+    assert "SHA-256" in skipped[0].reason
+
+
+@pytest.mark.parametrize(
+    ("spoil", "named"),
+    [
+        (lambda trials: trials.drop(columns="epochs"), "no column epochs"),
+        (lambda trials: trials.assign(cost="much"), "cost"),
+        (lambda trials: trials.assign(feasible=1.5), "feasible"),
+    ],
+)
+def test_rows_of_another_shape_are_named(run, spoil, named):
+    import pandas as pd
+
+    spoil(pd.read_parquet(run / "trials.parquet")).to_parquet(run / "trials.parquet")
+    write_manifest(run, map="kg18_test1", map_instance=0, planner="ga1", seed=0, trials=5)
+    frame, skipped = collect(run.parent.parent)
+    assert frame.empty
+    assert named in skipped[0].reason
+
+
+def test_a_file_that_is_no_parquet_is_named_and_the_others_are_read(run, make_run):
+    outputs = run.parent.parent
+    make_run(outputs, "table1", "kg18_test2", "ga1", n=3, log=False)
+    (run / "trials.parquet").write_bytes(b"no parquet")
+    write_manifest(run, map="kg18_test1", map_instance=0, planner="ga1", seed=0, trials=5)
+    frame, skipped = collect(outputs)
+    assert len(frame) == 3
+    assert "readable Parquet" in skipped[0].reason
+    shutil.rmtree(run)
+    assert collect(outputs).skipped == []

@@ -1,0 +1,51 @@
+import math
+
+import numpy as np
+import pytest
+from gapath.pipelines.statistics import expected_running_time, median_interval, wilson
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.stats import binomtest
+
+
+@given(st.integers(1, 2000).flatmap(lambda n: st.tuples(st.integers(0, n), st.just(n))))
+def test_wilson_agrees_with_scipy(case):
+    found, n = case
+    expected = binomtest(found, n).proportion_ci(method="wilson")
+    assert wilson(found / n, n) == pytest.approx((expected.low, expected.high), abs=1e-12)
+
+
+def test_wilson_of_the_papers_three_executions():
+    low, high = wilson(2 / 3, 3)
+    assert (round(low, 2), round(high, 2)) == (0.21, 0.94)
+
+
+def test_wilson_is_exact_at_its_ends_and_knows_nothing_of_nothing():
+    assert wilson(0.0, 7)[0] == 0.0
+    assert wilson(1.0, 7)[1] == 1.0
+    assert wilson(0.5, 0) == (0.0, 1.0)
+
+
+@given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=40), st.integers(0, 100))
+def test_median_interval_lies_within_the_sample_whatever_its_order(values, seed):
+    low, high = median_interval(values, seed)
+    assert min(values) <= low <= high <= max(values)
+    assert median_interval(values[::-1], seed) == (low, high)
+
+
+def test_median_interval_of_edge_cases():
+    assert median_interval([3.0, 3.0]) == (3.0, 3.0)
+    assert all(math.isnan(end) for end in median_interval([]))
+
+
+def test_median_interval_covers_the_median_about_19_times_in_20():
+    random = np.random.default_rng(1)
+    intervals = [median_interval(random.exponential(size=60), seed) for seed in range(200)]
+    covered = sum(low <= math.log(2) <= high for low, high in intervals)
+    assert 180 <= covered <= 199
+
+
+def test_expected_running_time_counts_failures():
+    assert expected_running_time([10, 20, 500, 500], [True, True, False, False]) == 515.0
+    assert expected_running_time([500, 500], [False, False]) == math.inf
+    assert expected_running_time([4, 6], [True, True]) == 5.0

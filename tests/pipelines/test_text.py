@@ -1,0 +1,74 @@
+import math
+import shlex
+from itertools import product
+
+import pytest
+from gapath.pipelines import text
+from gapath.pipelines.command import as_sweep
+from hypothesis import given
+from hypothesis import strategies as st
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [
+        (0.0, "0"), (9.0, "9"), (5.5, "5.5"), (0.01234, "0.0123"), (43.06, "43.1"), (999.4, "999"),
+        (1234.5, "1\N{THIN SPACE}234"), (37525, "37\N{THIN SPACE}525"), (math.inf, "∞"),
+        (math.nan, text.NOTHING), (0.5, "0.5"), (12.0001, "12"),
+    ],
+)  # fmt: skip
+def test_number(value, shown):
+    assert text.number(value) == shown
+
+
+@given(st.floats(1e-9, 999.9))
+def test_number_keeps_three_digits(value):
+    assert float(text.number(value)) == pytest.approx(value, rel=5.1e-3)
+
+
+@pytest.mark.parametrize(
+    ("rate", "shown"),
+    [(0, "0"), (1, "100"), (0.9999, "> 99.9"), (0.0001, "< 0.1"), (0.783, "78.3"), (0.999, "99.9")],
+)
+def test_percent_never_rounds_to_all_or_nothing(rate, shown):
+    assert text.percent(rate) == shown
+
+
+def test_spans_and_middles():
+    assert text.span(1, 3) == "1 to 3"
+    assert text.span(2, 2) == "2"
+    assert text.span(math.nan, math.nan) == text.NOTHING
+    assert text.middle(2, 1, 3) == "2 (1 to 3)"
+    assert text.middle(math.nan, math.nan, math.nan) == text.NOTHING
+    assert text.percent_range((0.21, 0.94), 0) == "21 to 94"
+    assert text.percent_range((math.nan, math.nan)) == text.NOTHING
+
+
+VALUES = st.lists(st.text("abc019", min_size=1, max_size=3), min_size=1, max_size=4, unique=True)
+
+
+@given(VALUES, VALUES)
+def test_a_sweep_stands_for_exactly_its_jobs(maps, planners):
+    jobs = [f"gapath map={m} planner={p} trials=5" for m, p in product(maps, planners)]
+    (line,) = as_sweep(jobs * 2)
+    if len(jobs) == 1:
+        assert line == jobs[0]
+        return
+    program, flag, *words = shlex.split(line)
+    assert (program, flag, words[-1]) == ("gapath", "-m", "trials=5")
+    chosen = [word.partition("=")[2].split(",") for word in words[:2]]
+    assert {f"gapath map={m} planner={p} trials=5" for m, p in product(*chosen)} == set(jobs)
+
+
+@pytest.mark.parametrize(
+    "commands",
+    [
+        ["gapath map=a planner=x", "gapath map=b planner=y"],  # not all combinations
+        ["gapath map=a", "gapath planner=x"],
+        ["gapath map.start=[0,1]", "gapath map.start=[0,2]"],
+        ["gapath map=a", "gapath map=a seed=1"],
+        ["", "gapath"],
+    ],
+)
+def test_commands_that_are_no_sweep_stay_as_they_are(commands):
+    assert as_sweep(commands) == sorted(commands)

@@ -1,0 +1,115 @@
+"""KG18's planner against its naive twin: the same epochs, chromosomes and costs."""
+
+import naive
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from strategies import planner, planners, problems
+
+from gapath import rng
+from gapath.errors import InputError
+from gapath.grid import GridMap
+from gapath.mapio.reconstructed import generate
+from gapath.metrics import flaw
+from gapath.problem import PlanStatus, Problem
+
+
+def same_as_twin(problem, ga, seed, trial):
+    plan = ga.plan(problem, rng.stream(seed, trial))
+    epochs, evaluations = naive.evolve(
+        problem.map.weights,
+        problem.start,
+        problem.target,
+        ga,
+        naive.Words(seed, trial),
+        problem.corner_cutting.name.lower(),
+    )
+    evolution = plan.evolution
+    assert plan.epochs == len(epochs)
+    assert plan.evaluations == evaluations
+    assert evolution.chromosomes.tolist() == [epoch["chromosome"] for epoch in epochs]
+    number = [epoch["best"][0] * ga.vln + epoch["best"][1] / 65536 for epoch in epochs]
+    assert evolution.best.tolist() == number
+    mean = [(e["obstacles"] * ga.vln + e["cost"] / 65536) / ga.population for e in epochs]
+    assert evolution.mean.tolist() == mean
+    points = naive.way_points(epochs[-1]["chromosome"], ga.way_points, ga.sampling == "span")
+    assert evolution.way_points[-1].tolist() == [list(point) for point in points]
+    assert plan.cost == number[-1]
+    assert plan.feasible == (epochs[-1]["best"][0] == 0)
+    assert plan.path.tolist() == (
+        [list(field) for field in naive.polyline(points)] if plan.feasible else []
+    )
+    if plan.feasible:
+        assert flaw(problem, plan.path) is None
+
+
+@settings(max_examples=300)
+@given(problems(), planners(), st.integers(0, 2**64 - 1), st.integers(0, 10**6))
+def test_evolution_equals_the_naive_twin(problem, ga, seed, trial):
+    same_as_twin(problem, ga, seed, trial)
+
+
+@pytest.mark.parametrize("map_class", ["kg18_test1", "kg18_test2", "kg18_test3", "kg18_test4"])
+@pytest.mark.parametrize(("population", "k"), [(40, 4), (100, 4), (100, 5)])
+def test_table1_settings_equal_the_naive_twin(map_class, population, k):
+    grid = generate(map_class, 0)
+    ga = planner(population=population, control_points=k, max_epochs=6)
+    same_as_twin(Problem(grid, grid.start, grid.target), ga, 7, 1)
+
+
+def test_it_never_stops_before_min_epochs():
+    grid = GridMap("empty", np.full((9, 9), 0.5))
+    plan = planner(min_epochs=4).plan(Problem(grid, (0, 4), (8, 4)), rng.stream(0))
+    assert plan.epochs == 4
+    assert plan.status is PlanStatus.FOUND
+
+
+def test_the_best_individual_never_gets_worse():
+    grid = generate("kg18_test4", 0)
+    ga = planner(population=40, max_epochs=60)
+    plan = ga.plan(Problem(grid, grid.start, grid.target), rng.stream(3))
+    assert (np.diff(plan.evolution.best) <= 0).all()
+    assert plan.status is PlanStatus.NOT_FOUND
+    assert plan.cost >= ga.vln
+    assert plan.evaluations == 40 + 59 * 30
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("population", 3),
+        ("population", -5),
+        ("population", 10**7),
+        ("control_points", 2),
+        ("control_points", 33),
+        ("min_epochs", 0),
+        ("min_epochs", 501),
+        ("max_epochs", 0),
+        ("way_points", 1),
+        ("sampling", "everywhere"),
+        ("mixing", 1.1),
+        ("mixing", float("nan")),
+        ("mutation_probability", -0.1),
+        ("line_jitter", -1),
+        ("line_jitter_probability", 2.0),
+        ("neighbourhood", -1),
+        ("margin", -1),
+        ("vln", 0.5),
+        ("vln", float("inf")),
+    ],
+)
+def test_settings_out_of_range_are_refused(field, value):
+    with pytest.raises(InputError, match=f"planner.{field}: got {value}"):
+        planner(**{field: value})
+
+
+def test_settings_that_need_too_much_memory_are_refused():
+    with pytest.raises(InputError, match=r"planner.population, planner.max_epochs: .* GiB"):
+        planner(population=10**6, max_epochs=10**6, control_points=32)
+
+
+def test_a_margin_that_leaves_nothing_is_refused():
+    grid = GridMap("small", np.full((9, 9), 0.5))
+    with pytest.raises(InputError, match=r"planner\.margin"):
+        planner(margin=5).plan(Problem(grid, (0, 0), (8, 8)), rng.stream(0))

@@ -1,0 +1,175 @@
+"""What every planner, recorder and map reader must do; they are found, not listed."""
+
+import inspect
+from importlib import import_module
+from importlib.resources import files
+
+import numpy as np
+import pytest
+
+from gapath import config, rng
+from gapath.api import yaml_values
+from gapath.events import Recorder, RunFinished
+from gapath.experiment import execute, run_started, trial_events
+from gapath.graph import shortest_path
+from gapath.grid import GridMap
+from gapath.metrics import flaw
+from gapath.problem import CornerCutting, Plan, Planner, PlanStatus, Problem
+from gapath.simulation import plan_once, plan_trials
+
+
+def yamls(group):
+    folder = files("gapath.conf") / group
+    return sorted(path.name[:-5] for path in folder.iterdir() if path.name.endswith(".yaml"))
+
+
+PLANNERS, RECORDERS, MAPS = yamls("planner"), yamls("recorder"), yamls("map")
+
+
+def make_planner(name, **values) -> Planner:
+    return config.build("planner", yaml_values("planner", name) | values, "planner")
+
+
+def make_problem(rule=CornerCutting.ALLOW):
+    """A map that every planner should solve now and then: one wall with a wide gap."""
+    weights = np.full((20, 30), 0.5)
+    weights[:12, 15] = 1.0
+    return Problem(GridMap("wall", weights), (2, 10), (27, 10), rule)
+
+
+@pytest.mark.parametrize("group", ["map", "planner", "recorder"])
+def test_every_module_has_a_yaml_and_every_yaml_a_module(group):
+    named = {yaml_values(group, name)["kind"] for name in yamls(group)}
+    assert named == set(config.kinds(group))
+
+
+@pytest.mark.parametrize("group", ["map", "planner", "recorder"])
+def test_every_value_of_a_yaml_is_a_field_without_default(group):
+    for name in yamls(group):
+        values = yaml_values(group, name)
+        module = import_module(f"{config.PACKAGES[group]}.{values.pop('kind')}")
+        target = getattr(module, config.TARGETS[group])
+        wanted = inspect.signature(target).parameters
+        assert set(values) == set(wanted), name
+        assert all(p.default is inspect.Parameter.empty for p in wanted.values()), name
+
+
+@pytest.mark.parametrize("name", PLANNERS)
+@pytest.mark.parametrize("rule", list(CornerCutting))
+def test_planners_give_paths_that_are_paths(name, rule):
+    planner, problem = make_planner(name), make_problem(rule)
+    assert isinstance(planner, Planner)
+    optimum = shortest_path(problem)
+    for trial in range(5):
+        plan = planner.plan(problem, rng.stream(1, trial))
+        assert isinstance(plan, Plan)
+        if plan.feasible:
+            assert flaw(problem, plan.path) is None
+            assert plan.cost >= optimum.cost
+            entries = problem.map.weights[plan.path[:, 1], plan.path[:, 0]]
+            assert plan.cost == pytest.approx(entries.sum())
+        else:
+            assert plan.status is PlanStatus.NOT_FOUND
+            assert not len(plan.path)
+
+
+@pytest.mark.parametrize("name", PLANNERS)
+def test_planners_give_the_same_plan_for_the_same_stream(name):
+    planner, problem = make_planner(name), make_problem()
+    first, again = (planner.plan(problem, rng.stream(5, 3)) for _ in range(2))
+    assert (first.status, first.cost, first.epochs) == (again.status, again.cost, again.epochs)
+    assert first.path.tolist() == again.path.tolist()
+    in_company = list(plan_trials(problem, shortest_path(problem), planner, 5, 4))[3].plan
+    assert in_company.path.tolist() == first.path.tolist()
+
+
+@pytest.mark.parametrize("name", PLANNERS)
+def test_a_walled_in_target_is_infeasible(name):
+    weights = np.full((12, 12), 0.5)
+    weights[7:10, 7:10] = 1.0
+    weights[8, 8] = 0.0
+    problem = Problem(GridMap("walled", weights), (1, 1), (8, 8))
+    assert plan_once(problem, make_planner(name), 0).status is PlanStatus.INFEASIBLE
+
+
+@pytest.mark.parametrize("name", PLANNERS)
+def test_an_evolution_tells_its_epochs(name):
+    problem = make_problem()
+    plan = make_planner(name).plan(problem, rng.stream(2))
+    evolution = plan.evolution
+    if evolution is None:
+        assert plan.epochs == plan.evaluations == 0
+        return
+    assert plan.evaluations >= plan.epochs >= 1
+    assert {len(part) for part in evolution[:4]} == {plan.epochs}
+    assert evolution.way_points.shape[2] == 2
+    assert evolution.best[-1] == plan.cost
+    assert (evolution.mean >= evolution.best).all()
+
+
+def make_run(recorders, planner, tmp_path, trials=3):
+    return config.Run(
+        "contract",
+        "any",
+        make_problem(),
+        planner,
+        recorders,
+        4,
+        trials,
+        f"planner: {yaml_values('planner', 'ga1')}\n",
+        str(tmp_path),
+        False,
+    )
+
+
+@pytest.mark.parametrize("name", RECORDERS)
+@pytest.mark.parametrize("planner_name", PLANNERS)
+def test_recorders_take_every_planners_events(name, planner_name, tmp_path):
+    planner, problem = make_planner(planner_name), make_problem()
+    recorder = config.build("recorder", yaml_values("recorder", name), "recorder")
+    assert isinstance(recorder, Recorder)
+    optimum = shortest_path(problem)
+    recorder.open(str(tmp_path))
+    recorder.record(run_started(make_run([], planner, tmp_path), optimum))
+    step = 0
+    for trial in plan_trials(problem, optimum, planner, 4, 3):
+        for event in trial_events(trial, 4, step):
+            recorder.record(event)
+        step += max(trial.plan.epochs, 1)
+    recorder.record(RunFinished(step, 3, 3))
+    names = recorder.close()
+    assert sorted(names) == sorted(path.name for path in tmp_path.iterdir())
+    assert all((tmp_path / file).stat().st_size > 0 for file in names)
+
+
+@pytest.mark.parametrize("name", RECORDERS)
+def test_a_recorder_that_is_aborted_leaves_no_file_that_looks_whole(name, tmp_path):
+    planner, problem = make_planner("ga1"), make_problem()
+    recorder = config.build("recorder", yaml_values("recorder", name), "recorder")
+    recorder.open(str(tmp_path))
+    recorder.record(run_started(make_run([], planner, tmp_path), shortest_path(problem)))
+    recorder.abort()
+    assert all(path.suffix == ".part" for path in tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", RECORDERS)
+def test_recording_changes_no_result(name, tmp_path):
+    rows = []
+    for recorders in ([], [config.build("recorder", yaml_values("recorder", name), "recorder")]):
+        folder = tmp_path / str(len(recorders))
+        outcome = execute(make_run(recorders, make_planner("ga1"), folder), "test", progress=False)
+        rows.append([(r.status, r.cost, r.epochs, r.evaluations) for r in outcome.rows])
+    assert rows[0] == rows[1]
+
+
+@pytest.mark.parametrize("name", MAPS)
+def test_map_readers_read_or_say_what_is_missing(name):
+    values = yaml_values("map", name)
+    if values.get("path") == "???":
+        values["path"] = "no such file"
+        with pytest.raises(config.InputError, match="no such file"):
+            config.build("map", values, "map").read()
+    else:
+        grid = config.build("map", values, "map").read()
+        assert isinstance(grid, GridMap)
+        Problem(grid, grid.start, grid.target)

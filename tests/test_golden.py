@@ -1,0 +1,133 @@
+"""Golden results: the same seed gives the same bytes, on every machine and however compiled.
+
+`make golden` accepts today's results; the difference then shows what changed.
+"""
+
+import hashlib
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from mcap.reader import make_reader
+
+from gapath.config import Run
+from gapath.experiment import execute
+from gapath.grid import GridMap
+from gapath.mapio.reconstructed import CLASSES, Reader
+from gapath.problem import Problem
+from gapath.recorders import mcap
+
+GOLDEN = Path(__file__).parent / "golden" / "table1.json"
+PLANNERS = ["ga1", "ga2", "ga3", "dijkstra", "astar"]
+
+
+def run(folder, map_class, planner, trials=2, **values):
+    from gapath.api import yaml_values
+    from gapath.config import build
+
+    grid: GridMap = Reader(map_class, 0).read()
+    settings = yaml_values("planner", planner) | values
+    problem = Problem(grid, grid.start, grid.target)
+    made = build("planner", settings, "planner")
+    recorders = [mcap.Recorder(flush_every=7)]
+    return execute(
+        Run(
+            "golden",
+            planner,
+            problem,
+            made,
+            recorders,
+            7,
+            trials,
+            f"planner: {settings}\n",
+            str(folder),
+            False,
+        ),
+        "test",
+        progress=False,
+    )
+
+
+def log_hash(path):
+    """Hash every message; metadata, which names versions, is left out."""
+    digest = hashlib.sha256()
+    with path.open("rb") as file:
+        reader = make_reader(file, validate_crcs=True)
+        for schema, channel, message in reader.iter_messages(log_time_order=False):
+            digest.update(f"{schema.name} {channel.topic} {message.log_time} ".encode())
+            digest.update(message.data)
+    return digest.hexdigest()
+
+
+def results(folder, map_class, planner, trials=2, **values):
+    outcome = run(folder, map_class, planner, trials, **values)
+    return {
+        "status": [row.status for row in outcome.rows],
+        "cost": [row.cost for row in outcome.rows],
+        "epochs": [row.epochs for row in outcome.rows],
+        "log": log_hash(outcome.folder / "run.mcap"),
+    }
+
+
+@pytest.mark.parametrize("map_class", CLASSES)
+@pytest.mark.parametrize("planner", PLANNERS)
+def test_table1_gives_the_golden_results(map_class, planner, tmp_path, update_golden):
+    ours = results(tmp_path, map_class, planner)
+    golden = json.loads(GOLDEN.read_text()) if GOLDEN.exists() else {}
+    if update_golden:
+        golden[f"{map_class} {planner}"] = ours
+        GOLDEN.write_text(json.dumps(golden, indent=1, sort_keys=True) + "\n")
+    assert ours == golden[f"{map_class} {planner}"]
+
+
+def test_two_runs_give_the_same_log_byte_for_byte(tmp_path):
+    logs = [
+        (run(tmp_path / name, "kg18_test2", "ga2").folder / "run.mcap").read_bytes()
+        for name in ("first", "second")
+    ]
+    assert logs[0] == logs[1]
+
+
+def test_a_trial_does_not_depend_on_how_many_others_run(tmp_path):
+    rows = [run(tmp_path / str(n), "kg18_test3", "ga2", n).rows for n in (2, 5)]
+    for alone, in_company in zip(*rows, strict=False):
+        assert (alone.cost, alone.epochs, alone.length) == (
+            in_company.cost,
+            in_company.epochs,
+            in_company.length,
+        )
+
+
+SMALL = ("kg18_test2", "ga1", 1)
+
+
+@pytest.mark.parametrize(
+    "environment",
+    [
+        {"NUMBA_DISABLE_JIT": "1"},
+        {"NUMBA_CPU_NAME": "generic"},
+        {"NUMBA_NUM_THREADS": "1"},
+        {"NUMBA_BOUNDSCHECK": "1"},
+    ],
+    ids=lambda environment: "=".join(*environment.items()),
+)
+def test_results_do_not_depend_on_how_the_kernels_are_compiled(environment, tmp_path):
+    here = results(tmp_path / "here", *SMALL, max_epochs=20)
+    code = (
+        "import json, pathlib, sys, test_golden as t; "
+        "print(json.dumps(t.results(pathlib.Path(sys.argv[1]), *t.SMALL, max_epochs=20)))"
+    )
+    there = subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", code, str(tmp_path / "there")],
+        env=os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "cache")} | environment,
+        cwd=Path(__file__).parent,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=300,
+    )
+    assert there.returncode == 0, there.stderr
+    assert json.loads(there.stdout) == here

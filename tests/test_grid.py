@@ -1,0 +1,81 @@
+"""Grid maps: what they accept, the rule of coordinates, the table."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from strategies import weights
+
+from gapath.errors import InputError
+from gapath.grid import MAX_SIDE, OBSTACLE, GridMap
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ([[0.5, float("nan")]], r"field \(1, 0\): got nan"),
+        ([[0.5], [float("inf")]], r"field \(0, 1\): got inf"),
+        ([[0.5, -0.1]], r"field \(1, 0\): got -0.1"),
+        ([[0.5, 1.5]], "expected a finite weight in"),
+        ([0.5, 0.5], "shape"),
+        ([[]], "shape"),
+        ([["a"]], "an array of numbers"),
+        (np.zeros((1, MAX_SIDE + 1)), "at most"),
+    ],
+)
+def test_weights_that_are_none_are_refused(values, message):
+    with pytest.raises(InputError, match=message):
+        GridMap("bad", values)
+
+
+@pytest.mark.parametrize("resolution", [0.0, -1.0, float("nan"), float("inf")])
+def test_a_resolution_that_is_none_is_refused(resolution):
+    with pytest.raises(InputError, match="resolution"):
+        GridMap("bad", np.zeros((2, 2)), resolution=resolution)
+
+
+@given(weights())
+def test_the_table_holds_weights_in_fixed_point(values):
+    table = GridMap("random", values).table
+    blocked = values == 1
+    assert (table[blocked] == OBSTACLE).all()
+    assert np.abs(table[~blocked] / 65536 - values[~blocked]).max(initial=0) <= 0.5 / 65536
+
+
+@given(weights(6))
+def test_the_least_weight_leaves_out_start_and_target(values):
+    grid = GridMap("random", values)
+    start, target = (0, 0), (grid.cols - 1, grid.rows - 1)
+    others = np.delete(grid.table.ravel(), [0, grid.table.size - 1])
+    assert grid.least_weight(start, target) == others.min(initial=others[0])
+
+
+def test_a_map_cannot_be_changed_behind_its_back():
+    values = np.full((2, 3), 0.5)
+    grid = GridMap("own", values)
+    values[0, 0] = 1.0
+    assert grid.weights[0, 0] == 0.5
+    with pytest.raises(ValueError, match="read-only"):
+        grid.weights[0, 0] = 1.0
+
+
+def test_metres_point_up_by_hand():
+    """Two rows of 0.5 m, corner at (10, 20): field (0, 1) is the lower left one."""
+    grid = GridMap("ros", np.zeros((2, 3)), resolution=0.5, origin=(10.0, 20.0, 0.0))
+    fields = np.array([(0, 1), (2, 0)], dtype=np.int32)
+    assert grid.to_metres(fields).tolist() == [[10.25, 20.25], [11.25, 20.75]]
+    turned = GridMap("ros", np.zeros((2, 3)), resolution=0.5, origin=(10.0, 20.0, math.pi / 2))
+    np.testing.assert_allclose(turned.to_metres(fields), [[9.75, 20.25], [9.25, 21.25]])
+
+
+def test_the_digest_tells_maps_apart():
+    maps = [
+        GridMap("a", np.zeros((2, 3))),
+        GridMap("a", np.zeros((3, 2))),
+        GridMap("a", np.full((2, 3), 0.5)),
+        GridMap("a", np.zeros((2, 3)), resolution=0.5),
+        GridMap("a", np.zeros((2, 3)), origin=(1.0, 0.0, 0.0)),
+    ]
+    assert len({grid.digest for grid in maps}) == len(maps)
+    assert maps[0].digest == GridMap("b", np.zeros((2, 3))).digest
