@@ -108,7 +108,7 @@ CLASSES: dict[str, tuple[Callable[[Draw], Obstacles], int]] = {
     # Seeds chosen so that instance 0 shows the epochs and failures of KG18's Table 1.
     "kg18_test1": (one_obstacle, 1),
     "kg18_test2": (scattered_obstacles, 2),
-    "kg18_test3": (two_walls, 217),
+    "kg18_test3": (two_walls, 15),
     "kg18_test4": (maze, 1),
 }
 

@@ -1,0 +1,75 @@
+"""Trials one after another: streams, clock, and planners that are wrong."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from strategies import planner
+
+from gapath.graph import shortest_path
+from gapath.grid import GridMap
+from gapath.problem import Plan, PlanStatus, Problem
+from gapath.simulation import plan_trials
+
+OPEN = Problem(GridMap("open", np.full((9, 9), 0.5)), (0, 4), (8, 4))
+
+
+@dataclass
+class Liar:
+    """Claims to have found a path that is none."""
+
+    def plan(self, problem, stream):
+        return Plan(PlanStatus.FOUND, np.array([problem.start, problem.target], dtype=np.int32))
+
+
+@dataclass
+class Counter:
+    """Counts its calls and remembers the first word of each stream."""
+
+    words: list
+
+    def plan(self, problem, stream):
+        self.words.append(tuple(int(word) for word in stream))
+        return Plan(PlanStatus.NOT_FOUND)
+
+
+def test_a_path_that_is_none_is_found_out():
+    with pytest.raises(RuntimeError, match="seed 3, trial 0: two successive fields"):
+        list(plan_trials(OPEN, shortest_path(OPEN), Liar(), 3, 1))
+
+
+def test_every_trial_has_its_own_stream_and_time():
+    counter = Counter([])
+    trials = list(plan_trials(OPEN, shortest_path(OPEN), counter, 3, 4))
+    assert [trial.number for trial in trials] == [0, 1, 2, 3]
+    assert all(trial.plan_time_s > 0 for trial in trials)
+    warm_up, *streams = counter.words
+    assert warm_up == streams[0]
+    assert len(set(streams)) == 4
+
+
+def test_an_infeasible_problem_calls_no_planner():
+    weights = np.full((3, 3), 0.5)
+    weights[:, 1] = 1.0
+    problem = Problem(GridMap("split", weights), (0, 0), (2, 2))
+    counter = Counter([])
+    trials = list(plan_trials(problem, shortest_path(problem), counter, 0, 2))
+    assert counter.words == []
+    assert [trial.plan.status for trial in trials] == [PlanStatus.INFEASIBLE] * 2
+    assert all(math.isnan(trial.plan_time_s) for trial in trials)
+
+
+def test_corner_cutting_decides_whether_a_problem_is_feasible():
+    from gapath.problem import CornerCutting
+
+    weights = np.array([[0.5, 1.0], [1.0, 0.5]])
+    for rule, status in [
+        (CornerCutting.ALLOW, PlanStatus.FOUND),
+        (CornerCutting.ONE_SIDE, PlanStatus.INFEASIBLE),
+        (CornerCutting.FORBID, PlanStatus.INFEASIBLE),
+    ]:
+        problem = Problem(GridMap("gap", weights), (0, 0), (1, 1), rule)
+        assert shortest_path(problem).status is status
+        (trial,) = plan_trials(problem, shortest_path(problem), planner(), 0, 1)
+        assert trial.plan.status is status
