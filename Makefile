@@ -59,6 +59,6 @@ $(VENV)/ready: requirements.lock pyproject.toml
 	fi; \
 	echo "making $(VENV) with $$($$found --version), about a minute"; \
 	rm -rf $(VENV); $$found -m venv $(VENV); \
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements.lock; \
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --use-pep517 -r requirements.lock; \
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .; \
 	touch $(VENV)/ready
