@@ -1,0 +1,291 @@
+"""The pages: names, links, commands and examples hold what they say."""
+
+import re
+import runpy
+import shlex
+import shutil
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+import test_contract
+import yaml
+from gapath.pipelines import cli as report_cli
+from hydra import compose, initialize_config_dir
+from hydra._internal.core_plugins.basic_sweeper import BasicSweeper
+from hydra._internal.utils import get_args_parser
+from hydra.core.override_parser.overrides_parser import OverridesParser
+from omegaconf import OmegaConf
+
+import gapath.planners
+from gapath import cli, config, log_cli
+from gapath.problem import CornerCutting
+
+ROOT = Path(__file__).parents[1]
+PAGES = [
+    page
+    for pattern in ("*.md", "docs/**/*.md", "maps/*.md", "outputs/README.md", "benchmarks/*.md")
+    for page in sorted(ROOT.glob(pattern))
+]
+PAPERS = (ROOT / "docs" / "papers.md").read_text("utf-8")
+SETTINGS = yaml.safe_load((ROOT / "conf" / "planner" / "bspline_ga.yaml").read_text("utf-8"))
+
+each_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+
+
+def blocks(text, language=""):
+    """The fenced code blocks of a language."""
+    return re.findall(rf"^```{language}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+
+
+def inline(text):
+    """Everything in single backticks."""
+    outside = re.sub(r"^```.*?^```$", "", text, flags=re.MULTILINE | re.DOTALL)
+    return re.findall(r"`([^`\n]+)`", outside)
+
+
+def is_object(name):
+    """Tell whether a dotted name is a module, or something within one."""
+    parts = name.split(".")
+    parts = ["gapath", *parts] if parts[0] == "pipelines" else parts
+    for at in range(len(parts), 0, -1):
+        try:
+            found = import_module(".".join(parts[:at]))
+        except ModuleNotFoundError:
+            continue
+        for part in parts[at:]:
+            annotated = getattr(found, "__annotations__", {})
+            if not hasattr(found, part) and part not in annotated:
+                return False
+            found = getattr(found, part, None)
+        return True
+    return False
+
+
+def is_test(name):
+    path, _, function = name.partition("::")
+    file = ROOT / path
+    return file.is_file() and f"\ndef {function}(" in file.read_text("utf-8")
+
+
+def is_setting(name):
+    """Tell whether `planner.x`, `map.x`, `recorder.y.x` or a root setting is in a YAML."""
+    group, _, rest = name.partition(".")
+    if not rest:
+        files = [ROOT / "conf" / "config.yaml"]
+    elif group == "recorder":
+        files = [ROOT / "conf" / "recorder" / f"{rest.partition('.')[0]}.yaml"]
+    else:
+        files = sorted((ROOT / "conf" / group).glob("*.yaml"))
+    key = name.rpartition(".")[2]
+    return any(key in yaml.safe_load(file.read_text("utf-8")) for file in files if file.is_file())
+
+
+def exists(name):
+    if "::" in name:
+        return is_test(name)
+    if "/" in name:
+        return (ROOT / name).exists()
+    if name.startswith(("gapath.", "pipelines.")):
+        return is_object(name)
+    return is_setting(name)
+
+
+def test_every_name_in_the_papers_page_exists():
+    names = sorted(set(inline(PAPERS)))
+    assert len(names) > 80
+    assert [name for name in names if not exists(name)] == []
+
+
+@each_page
+def test_every_test_and_object_that_a_page_names_exists(page):
+    names = set(inline(page.read_text("utf-8")))
+    named = [n for n in names if re.fullmatch(r"tests/[\w/.:]+|gapath\.[\w.]+", n)]
+    assert [name for name in named if not exists(name)] == []
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "gapath.kernels.bspline.spline",
+        "gapath.kernels.nothing",
+        "pipelines.kg18.MINUTES",
+        "tests/test_docs.py::test_of_nothing",
+        "tests/none.py::test_every_name_in_the_papers_page_exists",
+        "conf/planner/none.yaml",
+        "planner.colour",
+        "recorder.mcap.colour",
+        "colour",
+    ],
+)
+def test_a_name_that_does_not_exist_is_noticed(name):
+    assert not exists(name)
+
+
+def test_every_setting_of_kg18_is_on_the_papers_page_with_its_default():
+    rows = re.findall(r"^\| `planner\.(\w+)` \| ([^|]+) \|", PAPERS, re.MULTILINE)
+    shown = {name: yaml.safe_load(value) for name, value in rows}
+    assert shown == {name: value for name, value in SETTINGS.items() if name != "kind"}
+
+
+def test_what_is_assumed_in_the_yaml_is_assumed_on_the_papers_page():
+    text = (ROOT / "conf" / "planner" / "bspline_ga.yaml").read_text("utf-8")
+    yaml_says = set(re.findall(r"^(\w+): \S+ +# assumed", text, re.MULTILINE))
+    section = PAPERS.partition("### What is assumed")[2].partition("\n###")[0]
+    assert yaml_says == set(re.findall(r"^\| `planner\.(\w+)`", section, re.MULTILINE))
+
+
+def anchor(heading):
+    """The name that a heading has in links, as GitHub makes it."""
+    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+
+
+@each_page
+def test_every_link_within_the_project_leads_somewhere(page):
+    for link in re.findall(r"\]\(([^)\s]+)\)", page.read_text("utf-8")):
+        if re.match(r"(https?|mailto):", link):
+            continue
+        name, _, part = link.partition("#")
+        there = (page.parent / name).resolve() if name else page
+        assert there.exists(), link
+        if part:
+            headings = re.findall(r"^#+ (.+)$", there.read_text("utf-8"), re.MULTILINE)
+            assert part in map(anchor, headings), link
+
+
+def commands(page):
+    """Commands of ours that a page shows, but for those with placeholders."""
+    text = page.read_text("utf-8")
+    lines = [
+        line for block in blocks(text, r"\w*") for line in block.replace("\\\n", "").split("\n")
+    ]
+    found = [line.strip().removeprefix("$ ") for line in [*lines, *inline(text)]]
+    placeholder = re.compile(r"[<>…|\\]|\.\.\.|\b[A-Z]{3,}\b")
+    return [
+        line
+        for line in found
+        if re.match(r"gapath(-log|-report)? \S", line) and not placeholder.search(line)
+    ]
+
+
+def check_parser(parser, words):
+    try:
+        parser.parse_args(words)
+    except SystemExit as stop:
+        assert not stop.code, f"{parser.prog} does not know {words}"
+
+
+def check_log(words):
+    check_parser(log_cli._parser(), words)
+
+
+def check_report(words):
+    if words[:1] == ["runs"]:
+        check_parser(report_cli._runs_parser(), words[1:])
+    else:
+        check_parser(report_cli._report_parser(), words)
+
+
+def check_gapath(words):
+    """Compose every job of a command and make its parts; no map is read."""
+    given = get_args_parser().parse_args(words)
+    if given.shell_completion or given.help:
+        return
+    with initialize_config_dir(config.conf_folder(), version_base="1.3"):
+        jobs = [given.overrides]
+        if given.multirun:
+            parsed = OverridesParser.create().parse_overrides(given.overrides)
+            jobs = BasicSweeper.split_arguments(parsed, None)[0]
+        for overrides in jobs:
+            loose = OmegaConf.to_container(compose("config", overrides=overrides))
+            settings = config.typed(config.Settings, loose, "")
+            config.build("planner", settings.planner, "planner")
+            for name, values in settings.recorder.items():
+                config.build("recorder", values, f"recorder.{name}")
+            config.build("map", settings.map, "map")
+
+
+CHECKS = {"gapath": check_gapath, "gapath-log": check_log, "gapath-report": check_report}
+EXAMPLE = "planner=one_bend"  # in CONTRIBUTING.md; it has a test of its own
+
+
+@each_page
+def test_every_command_shown_is_understood(page):
+    for command in commands(page):
+        program, *words = shlex.split(command, comments=True)
+        if EXAMPLE not in words:
+            CHECKS[program](words)
+
+
+def test_a_command_that_is_wrong_is_noticed():
+    for words in (["planner=ga9"], ["planner.colour=red"], ["planner.population=-5"]):
+        with pytest.raises(cli.BAD_CONFIGURATION):
+            check_gapath(words)
+    with pytest.raises(AssertionError, match="gapath-log does not know"):
+        check_log(["look", "run.mcap"])
+    with pytest.raises(AssertionError, match="gapath-report does not know"):
+        check_report(["outputs", "--colour"])
+
+
+def test_the_library_example_of_the_readme_runs(tmp_path, capfd):
+    (example,) = blocks((ROOT / "README.md").read_text("utf-8"), "python")
+    (tmp_path / "example.py").write_text(example)
+    runpy.run_path(str(tmp_path / "example.py"))
+    assert "a feasible path was found" in capfd.readouterr().out
+
+
+@pytest.fixture
+def one_bend(tmp_path, monkeypatch):
+    """Write the two files of CONTRIBUTING.md's planner into an overlay of the package."""
+    text = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
+    module, settings = tmp_path / "planners" / "one_bend.py", tmp_path / "conf" / "planner"
+    shutil.copytree(ROOT / "conf", tmp_path / "conf")
+    module.parent.mkdir()
+    (code,), (values,) = blocks(text, "python"), blocks(text, "yaml")
+    module.write_text(code)
+    (settings / "one_bend.yaml").write_text(values)
+    overlay = [*gapath.planners.__path__, str(module.parent)]
+    monkeypatch.setattr(gapath.planners, "__path__", overlay)
+    monkeypatch.setattr(cli, "conf_folder", lambda: str(tmp_path / "conf"))
+    monkeypatch.setattr(
+        test_contract,
+        "make_planner",
+        lambda name: config.build("planner", yaml.safe_load(values), "planner"),
+    )
+    return "one_bend"
+
+
+def test_the_planner_of_the_guide_keeps_the_contract(one_bend):
+    for rule in CornerCutting:
+        test_contract.test_planners_give_paths_that_are_paths(one_bend, rule)
+    test_contract.test_planners_give_the_same_plan_for_the_same_stream(one_bend)
+    test_contract.test_a_walled_in_target_is_infeasible(one_bend)
+    test_contract.test_an_evolution_tells_its_epochs(one_bend)
+
+
+def test_the_planner_of_the_guide_runs_and_is_reproduced(one_bend, tmp_path, monkeypatch, capfd):
+    arguments = ["map=kg18_test1", f"planner={one_bend}", "planner.tries=500", "recorder=mcap"]
+    monkeypatch.setattr("sys.argv", ["gapath", *arguments, f"output={tmp_path / 'out'}"])
+    cli.main()
+    assert "status        found" in capfd.readouterr().out
+    (log,) = tmp_path.glob("out/plan/*/run.mcap")
+    assert log_cli.main(["verify", str(log)]) == 0
+
+
+def test_the_examples_of_the_log_page_read_a_log(tmp_path, monkeypatch, capfd):
+    pytest.importorskip("mcap_ros2")
+    arguments = ["map=kg18_test1", "planner=ga1", "recorder=mcap", "trials=2", "seed=5"]
+    monkeypatch.setattr("sys.argv", ["gapath", *arguments, f"output={tmp_path / 'out'}"])
+    cli.main()
+    (log,) = tmp_path.glob("out/plan/*/run.mcap")
+    monkeypatch.chdir(log.parent)
+    capfd.readouterr()
+    examples = blocks((ROOT / "docs" / "log.md").read_text("utf-8"), "python")
+    assert len(examples) == 2
+    for example in examples:
+        (tmp_path / "example.py").write_text(example)
+        runpy.run_path(str(tmp_path / "example.py"))
+    printed = capfd.readouterr().out.splitlines()
+    assert len(printed) == 2 + 1 + 2
+    assert "0 0 True" in printed[0]
+    assert printed[2] == "kg18_test1 5"
