@@ -1,0 +1,1 @@
+"""Measurements: one module a question, each with a ``measure(quick)`` that gives rows."""

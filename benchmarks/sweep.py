@@ -1,0 +1,60 @@
+"""Table 1 as a sweep on one core, every epoch logged: how long, and what takes the time.
+
+1000 seeds x 12 settings through `gapath.experiment.execute`, in wall seconds past start-up,
+run folder with `run.mcap` included. Every setting runs a second time without a recorder:
+"logging" is the difference, "rest" is what else is not planning (checks, metrics, tables, files).
+The target is 60 s for the total.
+"""
+
+import tempfile
+import time
+from dataclasses import replace
+
+import yaml
+
+from benchmarks.measure import MAPS, SETTINGS, Row, make_planner, make_problem
+from gapath.api import yaml_values
+from gapath.config import Run
+from gapath.experiment import execute
+from gapath.problem import Problem
+from gapath.recorders import mcap
+
+
+def _execute(run: Run, recorders: list[mcap.Recorder]) -> tuple[float, float]:
+    """Execute a run in a temporary folder; give its wall time and its planning time, s."""
+    with tempfile.TemporaryDirectory() as folder:
+        begin = time.perf_counter()
+        outcome = execute(replace(run, recorders=recorders, output=folder), "", progress=False)
+        seconds = time.perf_counter() - begin
+    return seconds, sum(row.plan_time_s for row in outcome.rows)
+
+
+def _run(problem: Problem, name: str, trials: int) -> Run:
+    settings = yaml.safe_dump({"planner": yaml_values("planner", name), "trials": trials})
+    return Run("sweep", name, problem, make_planner(name), [], 0, trials, settings, "", False)
+
+
+def measure(quick: bool) -> list[Row]:
+    trials = 20 if quick else 1000
+    rows: list[Row] = []
+    recorder = mcap.Recorder(flush_every=100)
+    _execute(_run(make_problem(MAPS[0]), SETTINGS[0], 2), [recorder])  # start-up
+    for problem in map(make_problem, MAPS):
+        for name in SETTINGS:
+            run = _run(problem, name, trials)
+            total, planning = _execute(run, [recorder])
+            bare, bare_planning = _execute(run, [])
+            rest = bare - bare_planning
+            rows.append(
+                {
+                    "map": problem.map.name,
+                    "planner": name,
+                    "trials": trials,
+                    "total s": total,
+                    "planning s": planning,
+                    "logging s": total - planning - rest,
+                    "rest s": rest,
+                }
+            )
+    sums = {key: sum(row[key] for row in rows) for key in list(rows[0])[2:]}
+    return [*rows, {"map": "all", "planner": "all", **sums}]

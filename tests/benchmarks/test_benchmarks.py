@@ -1,0 +1,117 @@
+"""The benchmarks compare like with like: rivals must give identical results."""
+
+import csv
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from strategies import planner, problems
+
+sys.path.insert(0, str(Path(__file__).parents[2]))  # benchmarks is not installed
+
+from benchmarks import __main__, exact, ga_run, logging, sweep, textbook
+from benchmarks.measure import MAPS, SETTINGS, interleave, make_planner, make_problem, quartiles
+from gapath.problem import CornerCutting, PlanStatus, Problem
+from gapath.rng import stream
+
+
+def both(problem, ga, seed):
+    plans = [
+        ga_run.plan_with(kernel, ga, problem, stream(seed)) for kernel in ga_run.KERNELS.values()
+    ]
+    ga_run.check_identical(plans[0], plans[1], "textbook")
+    return plans
+
+
+@pytest.mark.parametrize("map_name", MAPS)
+@pytest.mark.parametrize("name", SETTINGS)
+def test_the_textbook_kernel_is_identical(map_name, name):
+    for seed in range(5):
+        ours, other = both(make_problem(map_name), make_planner(name), seed)
+        assert ours.evaluations <= other.evaluations == ours.epochs * make_planner(name).population
+
+
+@settings(max_examples=50)
+@given(problems(), st.integers(3, 5), st.booleans(), st.integers(0, 2**64 - 1))
+def test_the_textbook_kernel_is_identical_on_random_maps(problem, k, clip_to_map, seed):
+    problem = Problem(problem.map, problem.start, problem.target, CornerCutting.ALLOW)
+    both(problem, planner(control_points=k, clip_to_map=clip_to_map, max_epochs=20), seed)
+
+
+def test_another_result_is_noticed():
+    problem, ga = make_problem("kg18_test3"), make_planner("ga1")
+    ours = ga_run.plan_with(ga_run.KERNELS["GA"], ga, problem, stream(0))
+    other = ga_run.plan_with(textbook.evolve, ga, problem, stream(1))
+    with pytest.raises(RuntimeError, match="textbook kernel gives another result"):
+        ga_run.check_identical(ours, other, "textbook")
+
+
+@settings(max_examples=50)
+@given(problems())
+def test_the_exact_peers_agree_on_random_maps(problem):
+    problem = Problem(problem.map, problem.start, problem.target, CornerCutting.ALLOW)
+    if exact.shortest_path(problem).status is PlanStatus.INFEASIBLE:
+        return
+    costs = {name: prepare(problem)()[0] for name, prepare in exact.PEERS.items()}
+    ours = costs.pop("gapath A*")
+    # fixed point against floats: a weight is rounded by at most 1 / 131072
+    assert list(costs.values()) == pytest.approx([ours] * 3, abs=problem.map.weights.size / 131072)
+
+
+def test_quartiles_and_orders():
+    assert quartiles([3.0, 1.0, 2.0, 5.0, 4.0]) == (3.0, 2.0, 4.0)
+    assert quartiles([7.0]) == (7.0, 7.0, 7.0)
+    order = []
+    rivals = {name: lambda name=name: order.append(name) or name for name in "ab"}
+    times, results = interleave([rivals] * 20)
+    assert {"".join(order[i : i + 2]) for i in range(0, 40, 2)} == {"ab", "ba"}
+    assert results == [{"a": "a", "b": "b"}] * 19
+    assert {name: len(sample) for name, sample in times.items()} == {"a": 19, "b": 19}
+
+
+def test_the_parts_of_a_sweep_add_up(monkeypatch):
+    monkeypatch.setattr(sweep, "MAPS", MAPS[:1])
+    rows = sweep.measure(quick=True)
+    assert [row["planner"] for row in rows] == [*SETTINGS, "all"]
+    for row in rows:
+        parts = [row[name] for name in ("planning s", "logging s", "rest s")]
+        assert np.isclose(sum(parts), row["total s"])
+        assert row["total s"] > row["planning s"] > 0
+
+
+def test_logged_trials_have_the_epochs_asked_for(tmp_path):
+    batch = logging.Batch("kg18_test3", 8, 12, str(tmp_path))
+    assert {trial.plan.epochs for trial in batch.trials} <= set(range(8, 13))
+    assert batch.log() > 0
+    assert all("evolution" not in vars(trial.plan) for trial in batch.trials)
+    batch.recorder.close()
+    assert (tmp_path / "run.mcap").stat().st_size > 0
+
+
+def test_the_command_writes_what_it_prints(tmp_path, monkeypatch, capsys):
+    output = tmp_path / "bench"
+    monkeypatch.setattr(__main__, "QUESTIONS", ("exact",))
+    monkeypatch.setattr(sys, "argv", ["benchmarks", "--output", str(output), "--quick"])
+    __main__.main()
+    printed = capsys.readouterr()
+    with (output / "exact.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == len(MAPS) * len(exact.PEERS)
+    assert all(float(row["solve us q1"]) <= float(row["solve us"]) for row in rows)
+    page = (output / "README.md").read_text()
+    assert "quick, not to be quoted" in page and "| kg18_test4 | skimage MCP" in page
+    assert "1/1 exact" in printed.err
+    assert printed.out.endswith(f"{output}: README.md, exact.csv\n")
+
+
+def test_a_file_is_no_output_folder(tmp_path, monkeypatch, capsys):
+    file = tmp_path / "file"
+    file.touch()
+    monkeypatch.setattr(sys, "argv", ["benchmarks", "--output", str(file)])
+    with pytest.raises(SystemExit) as ended:
+        __main__.main()
+    assert ended.value.code == 2
+    assert f"--output {file}" in capsys.readouterr().err
