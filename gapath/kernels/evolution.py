@@ -147,3 +147,34 @@ def evolve(
         chromosomes[:epoch],
         evaluations,
     )
+
+
+@kernel
+def fitness_history(
+    result: EvolutionResult, population: int, vln: float, scale: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Give the paper's numbers: eq. (5) of the best individual, and its mean.
+
+    Parameters
+    ----------
+    result : EvolutionResult
+        History of E epochs.
+    population : int
+        Individuals.
+    vln : float
+        What an obstacle field counts.
+    scale : int
+        Units of cost in a cost of 1.
+
+    Returns
+    -------
+    best, mean : (E,) float64
+        Epoch by epoch.
+    """
+    best = np.empty(result.keys.shape[0])
+    mean = np.empty(result.keys.shape[0])
+    for i in range(best.shape[0]):
+        key = result.keys[i]
+        best[i] = (key >> KEY_BITS) * vln + (key & (ONE_OBSTACLE - 1)) / scale
+        mean[i] = (result.obstacle_sums[i] * vln + result.cost_sums[i] / scale) / population
+    return best, mean

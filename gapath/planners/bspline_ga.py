@@ -14,7 +14,12 @@ import numpy as np
 from gapath.errors import require
 from gapath.grid import SCALE
 from gapath.kernels.bspline import Basis, basis, way_points
-from gapath.kernels.evolution import EvolutionResult, EvolutionSettings, evolve
+from gapath.kernels.evolution import (
+    EvolutionResult,
+    EvolutionSettings,
+    evolve,
+    fitness_history,
+)
 from gapath.kernels.fitness import KEY_BITS, ONE_OBSTACLE
 from gapath.kernels.population import Ends, InitialPopulation
 from gapath.kernels.raster import polyline
@@ -178,11 +183,10 @@ class Planner:
         return polyline(way_points(result.chromosomes[-1:], self._basis)[0])
 
     def _evolution(self, result: EvolutionResult) -> Evolution:
-        obstacles = result.keys >> KEY_BITS
-        cost = result.keys & (ONE_OBSTACLE - 1)
+        best, mean = fitness_history(result, self.population, self.vln, SCALE)
         return Evolution(
-            best=obstacles * self.vln + cost / SCALE,
-            mean=(result.obstacle_sums * self.vln + result.cost_sums / SCALE) / self.population,
+            best=best,
+            mean=mean,
             chromosomes=result.chromosomes,
             way_points=way_points(result.chromosomes, self._basis),
             genotype="control_points",
