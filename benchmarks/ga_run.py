@@ -28,7 +28,6 @@ from benchmarks.measure import (
     ratios,
 )
 from gapath.kernels import evolution
-from gapath.planners import bspline_ga
 from gapath.problem import Plan, Planner, Problem
 from gapath.rng import Stream, stream
 
@@ -40,12 +39,12 @@ def plan_with(
     kernel: Callable[..., Any], planner: Planner, problem: Problem, random: Stream
 ) -> Plan:
     """Plan, the evolution done by another kernel."""
-    before = bspline_ga.evolve
-    bspline_ga.evolve = kernel
+    before = evolution.evolve
+    evolution.evolve = kernel
     try:
         return planner.plan(problem, random)
     finally:
-        bspline_ga.evolve = before
+        evolution.evolve = before
 
 
 def check_identical(ours: Plan, other: Plan, name: str) -> None:

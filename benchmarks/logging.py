@@ -15,11 +15,12 @@ import numpy as np
 
 from benchmarks.measure import Row, make_planner, make_problem, quartiles, timed
 from gapath.config import Run
-from gapath.experiment import run_started, trial_events
+from gapath.experiment import run_started
 from gapath.graph import shortest_path
+from gapath.plan_task import PlanTask, trial_events
 from gapath.recorders import mcap
 from gapath.rng import stream
-from gapath.simulation import Trial
+from gapath.simulation import TimedPlan
 
 KINDS = (
     ("kg18_test1", 1, 1),
@@ -38,14 +39,14 @@ class Batch:
 
     def __init__(self, map_name: str, least: int, most: int, folder: str) -> None:
         problem, planner = make_problem(map_name), make_planner("ga1")
-        self.trials: list[Trial] = []
+        self.trials: list[TimedPlan] = []
         number = 0
         while len(self.trials) < BATCH:
             plan = planner.plan(problem, stream(0, number))
             if least <= plan.epochs <= most:
-                self.trials.append(Trial(number, plan, 0.0))
+                self.trials.append(TimedPlan(number, plan, 0.0))
             number += 1
-        run = Run("logging", "ga1", problem, planner, [], 0, BATCH, "", folder, False)
+        run = Run("logging", "ga1", problem, PlanTask(planner), [], 0, BATCH, "", folder, False)
         self.recorder = mcap.Recorder(flush_every=100)
         self.recorder.open(folder)
         self.recorder.record(run_started(run, shortest_path(problem)))
@@ -55,7 +56,7 @@ class Batch:
         fresh = [replace(trial, plan=replace(trial.plan)) for trial in self.trials]  # no history
         return timed(lambda: self._record(fresh))[0] / BATCH
 
-    def _record(self, trials: list[Trial]) -> None:
+    def _record(self, trials: list[TimedPlan]) -> None:
         for trial in trials:
             for event in trial_events(trial, 0, 0):
                 self.recorder.record(event)

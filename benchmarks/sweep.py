@@ -13,9 +13,10 @@ from dataclasses import replace
 import yaml
 
 from benchmarks.measure import MAPS, SETTINGS, Row, make_planner, make_problem
-from gapath.api import yaml_values
+from gapath.components import yaml_values
 from gapath.config import Run
 from gapath.experiment import execute
+from gapath.plan_task import PlanTask
 from gapath.problem import Problem
 from gapath.recorders import mcap
 
@@ -30,8 +31,11 @@ def _execute(run: Run, recorders: list[mcap.Recorder]) -> tuple[float, float]:
 
 
 def _run(problem: Problem, name: str, trials: int) -> Run:
-    settings = yaml.safe_dump({"planner": yaml_values("planner", name), "trials": trials})
-    return Run("sweep", name, problem, make_planner(name), [], 0, trials, settings, "", False)
+    settings = yaml.safe_dump(
+        {"task": "plan", "planner": yaml_values("planner", name), "trials": trials}
+    )
+    task = PlanTask(make_planner(name))
+    return Run("sweep", name, problem, task, [], 0, trials, settings, "", False)
 
 
 def measure(quick: bool) -> list[Row]:

@@ -96,7 +96,8 @@ def evolve(
     settings: EvolutionSettings,
     basis: Basis,
     stream: Stream,
-) -> EvolutionResult:
+    history: EvolutionResult,
+) -> int:
     """Run the genetic algorithm; arguments as `gapath.kernels.evolution.evolve`, rule ALLOW."""
     rows, cols = table.shape
     size, genes = settings.population, 2 * settings.control_points
@@ -107,8 +108,6 @@ def evolve(
 
     population = np.empty((size, genes), dtype=np.int32)
     keys = np.empty(size, dtype=np.int64)
-    history = np.empty((3, settings.max_epochs), dtype=np.int64)  # best, obstacles, costs
-    chromosomes = np.empty((settings.max_epochs, genes), dtype=np.int32)
     words = np.empty(size * inner, dtype=np.uint64)
     fill(stream, words)
     initialise(population, ends, (cols, rows), settings, words)
@@ -118,10 +117,10 @@ def evolve(
         for i in range(size):
             keys[i] = fitness(table, population[i], matrix)
         order = np.argsort(keys, kind="mergesort")  # stable: ties go to the lower index
-        history[0, epoch] = keys[order[0]]
-        history[1, epoch] = (keys >> KEY_BITS).sum()
-        history[2, epoch] = (keys & (ONE_OBSTACLE - 1)).sum()
-        chromosomes[epoch] = population[order[0]]
+        history.keys[epoch] = keys[order[0]]
+        history.obstacle_sums[epoch] = (keys >> KEY_BITS).sum()
+        history.cost_sums[epoch] = (keys & (ONE_OBSTACLE - 1)).sum()
+        history.chromosomes[epoch] = population[order[0]]
         epoch += 1
         feasible = keys[order[0]] < ONE_OBSTACLE
         if (feasible and epoch >= settings.min_epochs) or epoch == settings.max_epochs:
@@ -145,5 +144,4 @@ def evolve(
                     gene = clip(gene, (cols, rows)[g % 2], settings.clip_to_map)
                 following[i, g] = gene
         population = following
-    done = history[:, :epoch]
-    return EvolutionResult(done[0], done[1], done[2], chromosomes[:epoch], epoch * size)
+    return epoch

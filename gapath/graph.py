@@ -4,15 +4,15 @@ import numpy as np
 
 from gapath.grid import SCALE
 from gapath.kernels.graph_search import path_to, search
-from gapath.problem import Plan, PlanStatus, Problem
+from gapath.problem import Plan, PlanStatus, Query
 
 
-def shortest_path(problem: Problem, informed: bool = True, by_length: bool = False) -> Plan:
+def shortest_path(problem: Query, informed: bool = True, by_length: bool = False) -> Plan:
     """Find a path of least cost on the 8-connected grid.
 
     Parameters
     ----------
-    problem : Problem
+    problem : Query
         Start and target on a known map.
     informed : bool
         True for A*, False for Dijkstra: the same cost, fewer or more expansions.
@@ -28,7 +28,8 @@ def shortest_path(problem: Problem, informed: bool = True, by_length: bool = Fal
     grid = problem.map
     costs = np.zeros(grid.rows * grid.cols, dtype=np.int64)
     arrivals = np.empty(costs.size, dtype=np.int8)
-    cost, expansions = search(
+    expansions = np.zeros(1, dtype=np.int64)
+    cost = search(
         grid.table,
         problem.start,
         problem.target,
@@ -38,12 +39,13 @@ def shortest_path(problem: Problem, informed: bool = True, by_length: bool = Fal
         grid.least_weight(problem.start, problem.target),
         costs,
         arrivals,
+        expansions,
     )
     if cost < 0:
-        return Plan(PlanStatus.INFEASIBLE, expansions=int(expansions))
+        return Plan(PlanStatus.INFEASIBLE, expansions=int(expansions[0]))
     path = path_to(arrivals, grid.cols, problem.start, problem.target)
     if by_length:
         total = int(grid.table[path[:, 1], path[:, 0]].sum(dtype=np.int64))
     else:
         total = int(cost) + int(grid.table[problem.start[1], problem.start[0]])
-    return Plan(PlanStatus.FOUND, path, total / SCALE, expansions=int(expansions))
+    return Plan(PlanStatus.FOUND, path, total / SCALE, expansions=int(expansions[0]))

@@ -8,12 +8,14 @@ import hashlib
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TypeAlias
+from typing import Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import InputError, require
+from gapath.units import OBSTACLE as OBSTACLE
+from gapath.units import SCALE as SCALE
 
 Field: TypeAlias = tuple[int, int]
 """A field of the map as (x, y)."""
@@ -21,17 +23,30 @@ Field: TypeAlias = tuple[int, int]
 Table: TypeAlias = NDArray[np.int32]
 """What kernels read, (rows, cols): the weight in units of 1 / `SCALE`, or `OBSTACLE`."""
 
-SCALE = 65536
-"""Fixed point: a cost of 1.0 is 65536, so weights are rounded to 1 / 65536."""
-
-OBSTACLE = 1 << 24
-"""A table entry of a field that cannot be passed: above every weight's."""
-
 MAX_FIELDS = 1 << 26
 """Fields of the largest map that is accepted (8192 x 8192)."""
 
 MAX_SIDE = 1 << 16
 """Longest side of a map that is accepted."""
+
+
+class PlanningMap(Protocol):
+    """The part of a map that planners use: of a `GridMap`, or of what a robot knows of one."""
+
+    @property
+    def table(self) -> Table:
+        """What kernels read, (rows, cols) int32."""
+
+    @property
+    def rows(self) -> int:
+        """Number of fields from top to bottom."""
+
+    @property
+    def cols(self) -> int:
+        """Number of fields from left to right."""
+
+    def least_weight(self, start: Field, target: Field) -> int:
+        """Give a table entry that no field between start and target undercuts."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,8 +89,12 @@ class GridMap:
     def __post_init__(self) -> None:
         where = f"map {self.name}"
         try:
-            weights = np.array(self.weights, dtype=np.float64, order="C")
-        except (TypeError, ValueError) as error:
+            given = np.asarray(self.weights)
+            require(given.dtype.kind in "biuf", where, f"an array of {given.dtype}", "real numbers")
+            weights = np.array(given, dtype=np.float64, order="C")
+        except ValueError as error:  # rows of different lengths
+            if isinstance(error, InputError):
+                raise
             raise InputError(where, type(self.weights).__name__, "an array of numbers") from error
         require(
             weights.ndim == 2 and weights.size > 0,
@@ -95,6 +114,13 @@ class GridMap:
             raise InputError(
                 f"{where}, field ({x}, {y})", weights[y, x], "a finite weight in [0, 1]"
             )
+        numbers = (self.resolution, *self.origin)
+        require(
+            all(isinstance(v, int | float) for v in numbers),
+            f"{where}, resolution and origin",
+            numbers,
+            "numbers",
+        )
         require(
             math.isfinite(self.resolution) and self.resolution > 0,
             f"{where}, resolution",
@@ -108,6 +134,9 @@ class GridMap:
             "three finite numbers (metres, metres, radians)",
         )
         weights.setflags(write=False)
+        # file names may hold bytes that are no text; logs and tables cannot
+        name = self.name.encode("utf-8", "replace").decode("utf-8")
+        object.__setattr__(self, "name", name)
         object.__setattr__(self, "weights", weights)
 
     @property

@@ -89,7 +89,7 @@ _EIGHTHS = np.array([[5, 6, 7], [4, 0, 0], [3, 2, 1]])
 """Heading of a step (dx, dy) in eighths of a turn, clockwise from +x, at [dy + 1, dx + 1]."""
 
 
-def flaw(problem: Problem, path: NDArray[np.int32]) -> str | None:
+def flaw(problem: Problem, path: NDArray[np.int32], cost: float | None = None) -> str | None:
     """Say what is wrong with a path, independently of the planner that made it.
 
     Parameters
@@ -98,6 +98,8 @@ def flaw(problem: Problem, path: NDArray[np.int32]) -> str | None:
         Map, start, target and corner-cutting rule.
     path : (n, 2) int32
         Fields as (x, y).
+    cost : float, optional
+        What the planner says that it costs, KG18 eq. (5).
 
     Returns
     -------
@@ -124,4 +126,7 @@ def flaw(problem: Problem, path: NDArray[np.int32]) -> str | None:
         if ((first | second) if either else (first & second)).any():
             # a straight step's two fields are its own ends, which are free
             return "it cuts a corner"
+    true_cost = int(grid.table[y, x].sum(dtype=np.int64)) / SCALE
+    if cost is not None and cost != true_cost:
+        return f"it costs {true_cost}, not {cost}"
     return None

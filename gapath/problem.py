@@ -6,13 +6,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import IntEnum
 from functools import cached_property
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import require
-from gapath.grid import Field, GridMap
+from gapath.grid import Field, GridMap, PlanningMap
 from gapath.rng import Stream
 
 
@@ -74,8 +74,7 @@ class Problem:
     def __post_init__(self) -> None:
         for name in ("start", "target"):
             place = getattr(self, name)
-            pair = np.shape(place) == (2,) and all(float(v).is_integer() for v in place)
-            require(pair, f"map.{name}", place, "two integers [x, y]")
+            require(_is_pair(place), f"map.{name}", place, "two integers [x, y]")
             place = (int(place[0]), int(place[1]))
             object.__setattr__(self, name, place)
             require(
@@ -90,6 +89,14 @@ class Problem:
                 f"{list(place)}, an obstacle",
                 "a free field",
             )
+
+
+def _is_pair(place: Any) -> bool:
+    try:
+        x, y = place
+        return float(x).is_integer() and float(y).is_integer()
+    except (TypeError, ValueError, OverflowError):
+        return False
 
 
 class Evolution(NamedTuple):
@@ -172,6 +179,26 @@ class Plan:
         return f"<table><caption>gapath.Plan</caption>{cells}</table>"
 
 
+class Query(Protocol):
+    """What planners are asked: a `Problem`, or a robot's question about what it knows."""
+
+    @property
+    def map(self) -> PlanningMap:
+        """The map."""
+
+    @property
+    def start(self) -> Field:
+        """A free field."""
+
+    @property
+    def target(self) -> Field:
+        """A free field."""
+
+    @property
+    def corner_cutting(self) -> CornerCutting:
+        """The rule for diagonal steps."""
+
+
 @runtime_checkable
 class Planner(Protocol):
     """What a module of `gapath.planners` offers under the name ``Planner``.
@@ -179,12 +206,12 @@ class Planner(Protocol):
     A frozen dataclass whose fields are the settings of its YAML file in ``conf/planner``.
     """
 
-    def plan(self, problem: Problem, stream: Stream) -> Plan:
+    def plan(self, problem: Query, stream: Stream) -> Plan:
         """Plan a path; every random number comes from the stream.
 
         Parameters
         ----------
-        problem : Problem
+        problem : Query
             Start and target on a known map.
         stream : (4,) uint64
             A random stream, advanced in place (`gapath.rng.stream`).

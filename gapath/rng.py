@@ -140,6 +140,8 @@ def stream(seed: int, trial: int = 0, call: int = 0) -> Stream:
         If a key is out of range.
     """
     for name, key in (("seed", seed), ("trial", trial), ("call", call)):
+        whole = isinstance(key, int | np.integer)
+        require(whole, name, repr(key), "an integer in [0, 2**64)")
         require(0 <= key < 2**64, name, key, "an integer in [0, 2**64)")
     state = np.array([seed, trial, call, 1], dtype=np.uint64)
     fill(state, np.empty(12, dtype=np.uint64))

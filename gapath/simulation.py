@@ -12,8 +12,8 @@ from gapath.rng import stream
 
 
 @dataclass(frozen=True, eq=False)
-class Trial:
-    """A trial's answer and the time that it took.
+class TimedPlan:
+    """A planner's answer and the time that it took.
 
     Parameters
     ----------
@@ -46,15 +46,27 @@ def plan_once(problem: Problem, planner: Planner, seed: int, trial: int = 0) -> 
     -------
     Plan
         The answer; INFEASIBLE without calling the planner if the target is walled in.
+
+    Raises
+    ------
+    RuntimeError
+        If the planner returns a path that is none.
     """
     if shortest_path(problem).status is PlanStatus.INFEASIBLE:
         return Plan(PlanStatus.INFEASIBLE)
-    return planner.plan(problem, stream(seed, trial))
+    plan = planner.plan(problem, stream(seed, trial))
+    _check(problem, plan, seed, trial)
+    return plan
+
+
+def _check(problem: Problem, plan: Plan, seed: int, trial: int) -> None:
+    if plan.feasible and (wrong := flaw(problem, plan.path, plan.cost)):
+        raise RuntimeError(f"the planner's path for seed {seed}, trial {trial}: {wrong}")
 
 
 def plan_trials(
     problem: Problem, optimum: Plan, planner: Planner, seed: int, trials: int
-) -> Iterator[Trial]:
+) -> Iterator[TimedPlan]:
     """Plan with the random streams (seed, 0) to (seed, trials - 1).
 
     Parameters
@@ -70,7 +82,7 @@ def plan_trials(
 
     Yields
     ------
-    Trial
+    TimedPlan
         In order. Each depends on the seed and its own number alone.
 
     Raises
@@ -80,7 +92,7 @@ def plan_trials(
     """
     if optimum.status is PlanStatus.INFEASIBLE:
         for number in range(trials):
-            yield Trial(number, Plan(PlanStatus.INFEASIBLE), math.nan)
+            yield TimedPlan(number, Plan(PlanStatus.INFEASIBLE), math.nan)
         return
     planner.plan(problem, stream(seed, 0))  # compiles the kernels before the clock runs
     for number in range(trials):
@@ -88,6 +100,5 @@ def plan_trials(
         begin = time.perf_counter()
         plan = planner.plan(problem, random)
         seconds = time.perf_counter() - begin
-        if plan.feasible and (wrong := flaw(problem, plan.path)):
-            raise RuntimeError(f"the planner's path for seed {seed}, trial {number}: {wrong}")
-        yield Trial(number, plan, seconds)
+        _check(problem, plan, seed, number)
+        yield TimedPlan(number, plan, seconds)

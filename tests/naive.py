@@ -95,7 +95,7 @@ def fitness(weights, fields, rule="allow"):
             cost += floor(weights[y, x] * 65536 + 0.5)
         if i and forbidden(weights, fields[i - 1], fields[i], rule):
             obstacles += 1
-    return obstacles, cost
+    return min(obstacles, 2**19 - 1), cost
 
 
 def evolve(weights, start, target, planner, words, rule="allow"):
@@ -123,7 +123,8 @@ def evolve(weights, start, target, planner, words, rule="allow"):
                 reach = planner.neighbourhood
                 genes[g] = start[axis] - reach + high(word, 2 * reach + 1)
             else:
-                genes[g] = planner.margin + high(word, side - 2 * planner.margin)
+                margin = min(planner.margin, (side - 1) // 2)
+                genes[g] = margin + high(word, side - 2 * margin)
             genes[g] = clip(genes[g], side)
         population.append(genes)
 

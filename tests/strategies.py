@@ -68,6 +68,7 @@ def planners(draw):
         mutation_probability=draw(st.sampled_from([0.4, 0.0, 1.0, 0.1])),
         line_jitter=draw(st.integers(0, 15)),
         line_jitter_probability=draw(st.sampled_from([0.5, 0.0, 1.0])),
-        neighbourhood=draw(st.integers(0, 15)),
+        neighbourhood=draw(st.sampled_from([0, 7, 15, 65536])),
+        margin=draw(st.integers(0, 15)),
         clip_to_map=draw(st.booleans()),
     )

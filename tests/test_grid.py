@@ -20,7 +20,9 @@ from gapath.grid import MAX_SIDE, OBSTACLE, GridMap
         ([[0.5, 1.5]], "expected a finite weight in"),
         ([0.5, 0.5], "shape"),
         ([[]], "shape"),
-        ([["a"]], "an array of numbers"),
+        ([["a"]], "real numbers"),
+        ([[1], [1, 2]], "an array of numbers"),
+        ([[1j]], "real numbers"),
         (np.zeros((1, MAX_SIDE + 1)), "at most"),
     ],
 )

@@ -36,8 +36,43 @@ class EvolutionResult(NamedTuple):
     """(E,) cost of the whole population, in units of 1 / SCALE."""
     chromosomes: NDArray[np.int32]
     """(E, 2 k) the best individual."""
-    evaluations: int
-    """Chromosomes evaluated: the selected quarter, copied unchanged, is not evaluated again."""
+
+
+def run_evolution(
+    table: NDArray[np.int32],
+    ends: Ends,
+    rule: int,
+    settings: EvolutionSettings,
+    basis: Basis,
+    stream: Stream,
+) -> EvolutionResult:
+    """Run the genetic algorithm and cut its history to the epochs that it took.
+
+    Parameters
+    ----------
+    table, ends, rule, settings, basis, stream
+        As of `evolve`.
+
+    Returns
+    -------
+    EvolutionResult
+        Its last row is the answer.
+    """
+    most = settings.max_epochs
+    history = EvolutionResult(
+        np.empty(most, dtype=np.int64),
+        np.empty(most, dtype=np.int64),
+        np.empty(most, dtype=np.int64),
+        np.empty((most, 2 * settings.control_points), dtype=np.int32),
+    )
+    epochs = evolve(table, ends, rule, settings, basis, stream, history)
+    return EvolutionResult(*(part[:epochs] for part in history))
+
+
+def evaluations(settings: EvolutionSettings, epochs: int) -> int:
+    """Count the chromosomes evaluated: the selected quarter, copied, is not evaluated again."""
+    size = settings.population
+    return size + (epochs - 1) * (size - size // 4)
 
 
 @kernel
@@ -48,8 +83,12 @@ def evolve(
     settings: EvolutionSettings,
     basis: Basis,
     stream: Stream,
-) -> EvolutionResult:
+    history: EvolutionResult,
+) -> int:
     """Run the genetic algorithm.
+
+    It returns one number, because an interrupt that comes while numba makes Python objects
+    of a result kills the process.
 
     Parameters
     ----------
@@ -65,11 +104,13 @@ def evolve(
         Basis functions at the way points.
     stream : (4,) uint64
         Random stream, advanced in place.
+    history : EvolutionResult
+        Arrays for ``max_epochs`` epochs, overwritten.
 
     Returns
     -------
-    EvolutionResult
-        Its last row is the answer.
+    int
+        Epochs taken.
     """
     rows, cols = table.shape
     size, genes = settings.population, 2 * settings.control_points
@@ -83,21 +124,14 @@ def evolve(
     best = np.empty(selected, dtype=np.int64)
     words = np.empty(size * (inner + 1), dtype=np.uint64)
 
-    best_keys = np.empty(settings.max_epochs, dtype=np.int64)
-    obstacle_sums = np.empty(settings.max_epochs, dtype=np.int64)
-    cost_sums = np.empty(settings.max_epochs, dtype=np.int64)
-    chromosomes = np.empty((settings.max_epochs, genes), dtype=np.int32)
-
     first = words[: size * inner]
     fill(stream, first)
     initialise(population, ends, rows, cols, settings.clip_to_map, settings.initial, first)
     evaluated = 0  # individuals before this one carry their key over
-    evaluations = 0
     epoch = 0
     while True:
         for i in range(evaluated, size):
             keys[i] = fitness(table, population[i], basis, rule)
-        evaluations += size - evaluated
         rank_best(keys, best)
 
         obstacle_sum = np.int64(0)
@@ -105,14 +139,14 @@ def evolve(
         for i in range(size):
             obstacle_sum += keys[i] >> KEY_BITS
             cost_sum += keys[i] & (ONE_OBSTACLE - 1)
-        best_keys[epoch] = keys[best[0]]
-        obstacle_sums[epoch] = obstacle_sum
-        cost_sums[epoch] = cost_sum
-        chromosomes[epoch] = population[best[0]]
+        history.keys[epoch] = keys[best[0]]
+        history.obstacle_sums[epoch] = obstacle_sum
+        history.cost_sums[epoch] = cost_sum
+        history.chromosomes[epoch] = population[best[0]]
         epoch += 1
 
         # KG18 Sec. 3.8: a feasible path ends it, never before min_epochs
-        feasible = best_keys[epoch - 1] < ONE_OBSTACLE
+        feasible = history.keys[epoch - 1] < ONE_OBSTACLE
         if (feasible and epoch >= settings.min_epochs) or epoch == settings.max_epochs:
             break
 
@@ -140,13 +174,7 @@ def evolve(
         keys, offspring_keys = offspring_keys, keys
         evaluated = selected
 
-    return EvolutionResult(
-        best_keys[:epoch],
-        obstacle_sums[:epoch],
-        cost_sums[:epoch],
-        chromosomes[:epoch],
-        evaluations,
-    )
+    return epoch
 
 
 @kernel

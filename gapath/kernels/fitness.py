@@ -12,15 +12,17 @@ from numpy.typing import NDArray
 from gapath._jit import kernel
 from gapath.kernels.bspline import Basis, way_point
 from gapath.kernels.raster import HALF, SHIFT, slope
+from gapath.units import OBSTACLE as OBSTACLE
 
-OBSTACLE = 1 << 24  # as in gapath.grid: an entry's upper bits count one obstacle field
-OBSTACLE_BITS = 24
+OBSTACLE_BITS = 24  # an entry's upper bits count one obstacle field
 WEIGHT_MASK = OBSTACLE - 1
 
 KEY_BITS = 44
 """A key is (obstacle fields << KEY_BITS) + cost in units of 1 / SCALE."""
 ONE_OBSTACLE = 1 << KEY_BITS
 """Keys from here on belong to infeasible paths."""
+MOST_OBSTACLES = (1 << (63 - KEY_BITS)) - 1
+"""Obstacle fields that a key can count; a path with more counts as one with so many."""
 
 ALLOW, ONE_SIDE, FORBID = 0, 1, 2  # as gapath.problem.CornerCutting
 
@@ -205,10 +207,13 @@ def fitness(
     x0 = way_point(chromosome, basis, 0, 0)
     y0 = way_point(chromosome, basis, 0, 1)
     start = entry(table, x0, y0)
-    key = ((start >> OBSTACLE_BITS) << KEY_BITS) + (start & WEIGHT_MASK)
+    obstacles = start >> OBSTACLE_BITS
+    cost = start & WEIGHT_MASK
     for j in range(1, basis.denominators.shape[0]):
         x1 = way_point(chromosome, basis, j, 0)
         y1 = way_point(chromosome, basis, j, 1)
-        key += line_key(table, x0, y0, x1, y1, rule)
+        line = line_key(table, x0, y0, x1, y1, rule)
+        obstacles += line >> KEY_BITS
+        cost += line & (ONE_OBSTACLE - 1)
         x0, y0 = x1, y1
-    return key
+    return (min(obstacles, MOST_OBSTACLES) << KEY_BITS) + cost

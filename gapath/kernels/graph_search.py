@@ -8,14 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath._jit import kernel
-from gapath.kernels.fitness import ALLOW, OBSTACLE, cuts_corner
+from gapath.kernels.fitness import ALLOW, cuts_corner
+from gapath.units import OBSTACLE
 
 TIE_BITS = 16
 """Bits of the Chebyshev distance: maps have at most 2**16 fields a side."""
 
-STRAIGHT = 1 << 24
+STRAIGHT = 1 << 20
 """Length of a straight step, in the unit of lengths."""
-DIAGONAL = 23726566
+DIAGONAL = 1482910
 """Length of a diagonal step, round(sqrt(2) * STRAIGHT)."""
 
 # Straight steps first: at equal cost they win.
@@ -96,7 +97,8 @@ def search(
     least: int,
     costs: NDArray[np.int64],
     arrivals: NDArray[np.int8],
-) -> tuple[int, int]:
+    expansions: NDArray[np.int64],
+) -> int:
     """Find a cheapest path from start to target.
 
     Parameters
@@ -117,13 +119,14 @@ def search(
         Zeros; holds the cost of every field seen plus one, negative once it is settled.
     arrivals : (rows * cols,) int8
         Holds the step by which every field seen was entered.
+    expansions : (1,) int64
+        Overwritten with the number of fields expanded. (A kernel that runs for long returns
+        one number only: an interrupt while numba makes Python objects kills the process.)
 
     Returns
     -------
-    cost : int
+    int
         Cost of all fields entered, the start left out, or -1 if there is no path.
-    expansions : int
-        Fields expanded.
     """
     rows, cols = table.shape
     weights = table.ravel()
@@ -140,18 +143,18 @@ def search(
     fields[0] = start[1] * cols + start[0]
     costs[fields[0]] = 1
     size = 1
-    expansions = 0
+    expansions[0] = 0
     while size > 0:
         place = fields[0]
         drop_first(keys, fields, size)
         size -= 1
         cost = costs[place]
         if place == end:
-            return cost - 1, expansions
+            return cost - 1
         if cost < 0:
             continue  # settled: it was pushed again when a cheaper way was found
         costs[place] = -cost
-        expansions += 1
+        expansions[0] += 1
         if size + 8 > keys.shape[0]:
             keys = np.concatenate((keys, np.empty_like(keys)))
             fields = np.concatenate((fields, np.empty_like(fields)))
@@ -181,7 +184,7 @@ def search(
                     bound += estimate(dx, dy, by_length, least, target_weight)
                 push(keys, fields, size, (bound << TIE_BITS) + max(dx, dy), neighbour)
                 size += 1
-    return np.int64(-1), expansions
+    return np.int64(-1)
 
 
 @kernel

@@ -96,7 +96,8 @@ def initialise(
                 reach = settings.neighbourhood
                 gene = start[axis] + high(word, 2 * reach + 1) - reach
             else:
-                gene = settings.margin + high(word, side - 2 * settings.margin)
+                margin = min(settings.margin, (side - 1) // 2)
+                gene = margin + high(word, side - 2 * margin)
             population[i, g] = clip(gene, side, clip_to_map)
 
 

@@ -4,7 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath._jit import kernel
-from gapath.kernels.fitness import ALLOW, OBSTACLE, ONE_OBSTACLE, line_key
+from gapath.kernels.fitness import ALLOW, ONE_OBSTACLE, line_key
+from gapath.units import OBSTACLE
 
 
 @kernel

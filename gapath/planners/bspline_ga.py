@@ -17,13 +17,14 @@ from gapath.kernels.bspline import Basis, basis, way_points
 from gapath.kernels.evolution import (
     EvolutionResult,
     EvolutionSettings,
-    evolve,
+    evaluations,
     fitness_history,
+    run_evolution,
 )
 from gapath.kernels.fitness import KEY_BITS, ONE_OBSTACLE
 from gapath.kernels.population import Ends, InitialPopulation
 from gapath.kernels.raster import polyline
-from gapath.problem import Evolution, Plan, PlanStatus, Problem
+from gapath.problem import Evolution, Plan, PlanStatus, Query
 from gapath.rng import Stream, probability_threshold
 
 MAX_BYTES = 1 << 30
@@ -56,7 +57,8 @@ class Planner:
     neighbourhood : int
         Reach of the points around the start, in fields.
     margin : int
-        Distance from the border of the points all over the map, in fields.
+        Distance from the border of the points all over the map, in fields; on a smaller map
+        as much as leaves its middle.
     clip_to_map : bool
         Move genes outside the map to its border.
     vln : float
@@ -97,10 +99,9 @@ class Planner:
         for name in ("line_jitter", "neighbourhood", "margin"):
             check(name, 0 <= getattr(self, name) <= 65536, "an integer from 0 to 65536")
         check("vln", 1 <= self.vln < float("inf"), "a finite number above every weight")
-        genes = 2 * self.control_points
-        needed = (genes * (2 * self.population + self.max_epochs) * 4) + 8 * (
-            genes * self.population + 3 * self.max_epochs
-        )
+        genes, points = 2 * self.control_points, len(self._basis.denominators)
+        needed = 4 * genes * (2 * self.population + self.max_epochs)
+        needed += 8 * (genes * self.population + (5 + points) * self.max_epochs)
         require(
             needed <= MAX_BYTES,
             "planner.population, planner.max_epochs",
@@ -133,12 +134,12 @@ class Planner:
             ),
         )
 
-    def plan(self, problem: Problem, stream: Stream) -> Plan:
+    def plan(self, problem: Query, stream: Stream) -> Plan:
         """Run the genetic algorithm once.
 
         Parameters
         ----------
-        problem : Problem
+        problem : Query
             Start and target on a known map.
         stream : (4,) uint64
             A random stream, advanced in place.
@@ -147,20 +148,9 @@ class Planner:
         -------
         Plan
             FOUND with the best path, or NOT_FOUND with the best fitness.
-
-        Raises
-        ------
-        InputError
-            If the margin leaves nothing of the map.
         """
         grid = problem.map
-        require(
-            2 * self.margin < min(grid.rows, grid.cols),
-            "planner.margin",
-            self.margin,
-            f"less than half the smaller side of the map, {min(grid.rows, grid.cols)}",
-        )
-        result = evolve(
+        result = run_evolution(
             grid.table,
             Ends(*problem.start, *problem.target),
             int(problem.corner_cutting),
@@ -175,7 +165,7 @@ class Planner:
             path=self._path(result) if found else np.empty((0, 2), dtype=np.int32),
             cost=(key >> KEY_BITS) * self.vln + (key & (ONE_OBSTACLE - 1)) / SCALE,
             epochs=len(result.keys),
-            evaluations=int(result.evaluations),
+            evaluations=evaluations(self._settings, len(result.keys)),
             trace=partial(self._evolution, result),
         )
 

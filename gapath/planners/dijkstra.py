@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from gapath.errors import require
 from gapath.graph import shortest_path
-from gapath.problem import Plan, Problem
+from gapath.problem import Plan, Query
 from gapath.rng import Stream
 
 
@@ -29,6 +29,6 @@ class Planner:
             '"weights" or "length"',
         )
 
-    def plan(self, problem: Problem, stream: Stream) -> Plan:
+    def plan(self, problem: Query, stream: Stream) -> Plan:
         """Find a path of least cost; the stream is not used."""
         return shortest_path(problem, informed=False, by_length=self.minimise == "length")

@@ -109,7 +109,22 @@ def test_settings_that_need_too_much_memory_are_refused():
         planner(population=10**6, max_epochs=10**6, control_points=32)
 
 
-def test_a_margin_that_leaves_nothing_is_refused():
+def test_a_margin_that_is_too_wide_leaves_the_middle_of_the_map():
     grid = GridMap("small", np.full((9, 9), 0.5))
-    with pytest.raises(InputError, match=r"planner\.margin"):
-        planner(margin=5).plan(Problem(grid, (0, 0), (8, 8)), rng.stream(0))
+    ga = planner(margin=100, population=9, line_jitter=0, neighbourhood=0)
+    plan = ga.plan(Problem(grid, (4, 4), (4, 4)), rng.stream(0))
+    assert plan.path.tolist() == [[4, 4]]
+
+
+def test_paths_far_outside_the_map_are_no_solutions():
+    """More obstacle fields than a key can count must not pass for none."""
+    weights = np.full((300, 300), 0.5)
+    weights[range(300), range(299, -1, -1)] = 1.0
+    weights[range(1, 300), range(299, 0, -1)] = 1.0
+    problem = Problem(GridMap("wall", weights), (0, 0), (299, 299))
+    ga = planner(
+        neighbourhood=65536, control_points=12, way_points=16, sampling="span", max_epochs=5
+    )
+    plan = ga.plan(problem, rng.stream(0))
+    assert plan.status is PlanStatus.NOT_FOUND
+    assert plan.cost >= ga.vln
