@@ -1,0 +1,157 @@
+"""What a robot sees: a triangle of fields, its top in the robot's own field (KG18 Sec. 5).
+
+Layer x, counted from the robot, has 2 x + 1 fields, eq. (7). For a straight heading it is a
+row across it, for a diagonal one the L of the fields of the quadrant at that Chebyshev
+distance.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gapath._jit import kernel
+from gapath.kernels.fitness import ALLOW, OBSTACLE, cuts_corner
+from gapath.kernels.raster import HALF, SHIFT, slope
+
+# Headings 0 to 7 in eighths of a turn, clockwise from +x (y points down).
+HEADING_X = np.array([1, 1, 0, -1, -1, -1, 0, 1], dtype=np.int64)
+HEADING_Y = np.array([0, 1, 1, 1, 0, -1, -1, -1], dtype=np.int64)
+
+
+@kernel
+def heading_of(dx: int, dy: int) -> int:
+    """Give the heading of a direction: one of eight.
+
+    Parameters
+    ----------
+    dx, dy : int
+        A direction; the zero direction has heading 0.
+
+    Returns
+    -------
+    int
+        0 (+x) to 7, clockwise with y down; for a direction that is no multiple of a step,
+        the axis if the other component is less than half as long, else the diagonal.
+    """
+    if 2 * abs(dy) < abs(dx):
+        dy = 0
+    elif 2 * abs(dx) < abs(dy):
+        dx = 0
+    sign_x, sign_y = int(dx > 0) - int(dx < 0), int(dy > 0) - int(dy < 0)
+    for heading in range(8):
+        if HEADING_X[heading] == sign_x and HEADING_Y[heading] == sign_y:
+            return heading
+    return 0
+
+
+@kernel
+def is_seen(table: NDArray[np.int32], x0: int, y0: int, x1: int, y1: int) -> bool:
+    """Tell whether a straight line reaches a field without crossing an obstacle before it."""
+    n = max(abs(x1 - x0), abs(y1 - y0))
+    if n == 0:
+        return True
+    slope_x, slope_y = slope(x1 - x0, n), slope(y1 - y0, n)
+    x, y = (x0 << SHIFT) + HALF, (y0 << SHIFT) + HALF
+    for _ in range(n - 1):
+        x += slope_x
+        y += slope_y
+        if table[y >> SHIFT, x >> SHIFT] >= OBSTACLE:
+            return False
+    return True
+
+
+@kernel
+def sense(
+    true_table: NDArray[np.int32],
+    known_table: NDArray[np.int32],
+    seen: NDArray[np.bool_],
+    x: int,
+    y: int,
+    heading: int,
+    layers: int,
+    occlusion: bool,
+    news: NDArray[np.int64],
+) -> int:
+    """Look in a direction and take over what is seen into the known map.
+
+    Parameters
+    ----------
+    true_table : (rows, cols) int32
+        The world.
+    known_table : (rows, cols) int32
+        What the robot believes; changed in place.
+    seen : (rows, cols) bool
+        Fields seen so far; changed in place.
+    x, y : int
+        The robot's field.
+    heading : int
+        0 to 7.
+    layers : int
+        Range of the sensor: layers 0 to this one.
+    occlusion : bool
+        An obstacle hides what lies behind it on a straight line.
+    news : ((layers + 1)**2,) int64
+        Overwritten with the flat indices of fields seen for the first time or changed.
+
+    Returns
+    -------
+    int
+        How many of them.
+    """
+    rows, cols = true_table.shape
+    forward_x, forward_y = HEADING_X[heading], HEADING_Y[heading]
+    diagonal = forward_x != 0 and forward_y != 0
+    count = 0
+    for layer in range(layers + 1):
+        for i in range(-layer, layer + 1):
+            if diagonal:
+                # the L: along x for i <= 0, then along y for i >= 0
+                along_x = layer if i >= 0 else layer + i
+                along_y = layer if i <= 0 else layer - i
+                u, v = x + forward_x * along_x, y + forward_y * along_y
+            else:
+                u = x + forward_x * layer + forward_y * i
+                v = y + forward_y * layer + forward_x * i
+            if not (0 <= u < cols and 0 <= v < rows):
+                continue
+            if occlusion and not is_seen(true_table, x, y, u, v):
+                continue
+            if not seen[v, u] or known_table[v, u] != true_table[v, u]:
+                seen[v, u] = True
+                known_table[v, u] = true_table[v, u]
+                news[count] = v * cols + u
+                count += 1
+    return count
+
+
+@kernel
+def remaining_cost(table: NDArray[np.int32], path: NDArray[np.int32], first: int, rule: int) -> int:
+    """Sum the rest of a path, its own field included.
+
+    Parameters
+    ----------
+    table : (rows, cols) int32
+        The known map.
+    path : (n, 2) int32
+        Fields as (x, y).
+    first : int
+        Index of the robot's own field.
+    rule : int
+        Corner-cutting rule.
+
+    Returns
+    -------
+    int
+        The sum in units of 1 / SCALE, or -1 if an obstacle is on it or it cuts
+        a corner.
+    """
+    total = np.int64(0)
+    for i in range(first, path.shape[0]):
+        found = table[path[i, 1], path[i, 0]]
+        if found >= OBSTACLE:
+            return -1
+        total += found
+        if rule != ALLOW and i > first:
+            x0, y0, x1, y1 = path[i - 1, 0], path[i - 1, 1], path[i, 0], path[i, 1]
+            if cuts_corner(table, x0, y0, x1, y1, rule):
+                return -1
+    return total

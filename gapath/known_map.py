@@ -1,0 +1,123 @@
+"""What the robot knows: unknown fields count as free (KG18 Sec. 3.12)."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gapath.grid import OBSTACLE, SCALE, Field, GridMap, Table
+from gapath.kernels.field_of_view import sense
+
+
+class KnownMap:
+    """The map in the robot's head; it grows as the robot looks around.
+
+    Parameters
+    ----------
+    world : GridMap
+        The true map: its size, and what is known from the start of the two ends.
+    start, target : (x, y)
+        Fields whose weight is known (KG18 Sec. 2: the paper's are 0).
+    unknown_weight : float
+        What the robot takes an unknown field to cost.
+    before : GridMap, optional
+        What the robot knows before it starts; where it is free it counts as unknown.
+    """
+
+    def __init__(
+        self,
+        world: GridMap,
+        start: Field,
+        target: Field,
+        unknown_weight: float,
+        before: GridMap | None = None,
+    ) -> None:
+        unknown = int(unknown_weight * SCALE + 0.5)
+        self.table: Table = np.full((world.rows, world.cols), unknown, dtype=np.int32)
+        self.seen: NDArray[np.bool_] = np.zeros((world.rows, world.cols), dtype=np.bool_)
+        if before is not None:
+            blocked = before.table >= OBSTACLE
+            self.table[blocked] = OBSTACLE
+        for x, y in (start, target):
+            self.table[y, x] = world.table[y, x]
+            self.seen[y, x] = True
+        self._ends = (start, target)
+        self._least = unknown
+        # A start lighter than all other fields spoils their weight as a bound only for fields
+        # from which a straightest way to the target leads over it.
+        light = int(world.table[start[1], start[0]]) < unknown
+        self._start_may_shorten = light and _lies_between(start, target, self.rows, self.cols)
+        self._flat = self.table.ravel()
+        self._news = np.empty(0, dtype=np.int64)
+
+    @property
+    def rows(self) -> int:
+        """Number of fields from top to bottom."""
+        return int(self.table.shape[0])
+
+    @property
+    def cols(self) -> int:
+        """Number of fields from left to right."""
+        return int(self.table.shape[1])
+
+    def contains(self, place: Field) -> bool:
+        """Tell whether a field (x, y) lies on the map."""
+        return 0 <= place[0] < self.cols and 0 <= place[1] < self.rows
+
+    def is_obstacle(self, place: Field) -> bool:
+        """Tell whether a field (x, y) cannot be passed as far as the robot knows."""
+        return bool(self.table[place[1], place[0]] >= OBSTACLE)
+
+    def least_weight(self, start: Field, target: Field) -> int:
+        """Give a table entry that bounds the weights of fields between start and target."""
+        return 0 if self._start_may_shorten and start not in self._ends else self._least
+
+    def look(
+        self, world: Table, place: Field, heading: int, layers: int, occlusion: bool
+    ) -> NDArray[np.int64]:
+        """Take over what the robot sees.
+
+        Parameters
+        ----------
+        world : (rows, cols) int32
+            The true map now.
+        place : (x, y)
+            The robot's field.
+        heading : int
+            0 to 7 (`gapath.kernels.field_of_view`).
+        layers : int
+            Range of the sensor.
+        occlusion : bool
+            Obstacles hide what lies behind them.
+
+        Returns
+        -------
+        (n,) int64
+            Flat indices of the fields that are new or have changed.
+        """
+        room = (layers + 1) ** 2
+        if self._news.size < room:
+            self._news = np.empty(room, dtype=np.int64)
+        count = sense(world, self.table, self.seen, *place, heading, layers, occlusion, self._news)
+        news = self._news[:count].copy()
+        if count:
+            self._least = min(self._least, int(self._flat[news].min()))
+        return news
+
+    def dearer(self, places: tuple[Field, ...], penalty: float) -> "KnownMap":
+        """Give a copy on which some fields cost more."""
+        copy = object.__new__(KnownMap)
+        copy.__dict__.update(self.__dict__)
+        copy.table = self.table.copy()
+        rows, cols = [y for _, y in places], [x for x, _ in places]
+        before = self.table[rows, cols].astype(np.int64)
+        after = np.minimum(before + int(penalty * SCALE), OBSTACLE - 1)
+        copy.table[rows, cols] = np.where(before >= OBSTACLE, OBSTACLE, after)
+        return copy
+
+
+def _lies_between(start: Field, target: Field, rows: int, cols: int) -> bool:
+    """Tell whether the start lies on a straightest way to the target from any other field."""
+    y, x = np.mgrid[0:rows, 0:cols]
+    to_start = np.maximum(abs(x - start[0]), abs(y - start[1]))
+    to_target = np.maximum(abs(x - target[0]), abs(y - target[1]))
+    between = to_start + to_target[start[1], start[0]] == to_target
+    return int(np.count_nonzero(between)) > 1

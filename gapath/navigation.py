@@ -1,0 +1,116 @@
+"""A drive through an unknown map, step by step: what every navigator must offer."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import NamedTuple, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gapath.grid import Field
+from gapath.known_map import KnownMap
+from gapath.problem import CornerCutting, Plan
+from gapath.rng import Stream
+
+Path = NDArray[np.int32]
+
+StreamOf = Callable[[int, int], Stream]
+"""The random stream of one call within a step: (part, index) -> stream."""
+
+
+class Mode(IntEnum):
+    """What the robot is doing (KG18 Fig. 11)."""
+
+    EXPLORE = 0
+    """Following its current path: part B."""
+    REPLAN = 1
+    """Its current path met an obstacle: part C."""
+    RETURN = 2
+    """Going back in its footsteps: part A."""
+
+
+class Query(NamedTuple):
+    """What a navigator asks a planner: from the robot's field, on what it knows."""
+
+    map: KnownMap
+    start: Field
+    target: Field
+    corner_cutting: CornerCutting
+
+
+@dataclass(frozen=True, eq=False)
+class Call:
+    """A planner was called in this step."""
+
+    part: str
+    """A, B or C (KG18 Figs 12-14)."""
+    index: int
+    """Number of the planner in its part's list."""
+    plan: Plan
+    """Its answer."""
+    adopted: bool
+    """Whether its path became the current one."""
+
+
+class Decision(NamedTuple):
+    """What a navigator wants to do in a step."""
+
+    place: Field
+    """The next field; the robot's own if it stands."""
+    mode: Mode
+    """What it is doing."""
+    moved: object
+    """The navigator's state after the move."""
+    stood: object
+    """Its state if the next field turns out to be blocked."""
+    calls: tuple[Call, ...] = ()
+    """The planners it called."""
+    path: Path | None = None
+    """The current path from the robot's field on, (n, 2) int32; None if it has none."""
+    past: tuple[Field, ...] = ()
+    """The way back, oldest field first, the robot's own last."""
+
+
+@runtime_checkable
+class Navigator(Protocol):
+    """What a module of `gapath.navigators` offers under the name ``Navigator``.
+
+    A frozen dataclass whose fields are the settings of its YAML file in ``conf/navigator``.
+    """
+
+    def begin(self, query: Query) -> object:
+        """Give the state before the first step.
+
+        Parameters
+        ----------
+        query : Query
+            Start, target and what is known before the first look.
+
+        Returns
+        -------
+        object
+            The navigator's state.
+        """
+
+    def step(
+        self, state: object, query: Query, news: NDArray[np.int64], streams: StreamOf
+    ) -> Decision:
+        """Decide what to do next.
+
+        Parameters
+        ----------
+        state : object
+            As the step before left it.
+        query : Query
+            The robot's field, the target, and what is known now.
+        news : (n,) int64
+            Flat indices of the fields of the known map that changed since the last step.
+        streams : callable
+            Random streams, by part and index.
+
+        Returns
+        -------
+        Decision
+            The next field and both states that may follow.
+        """

@@ -1,0 +1,1 @@
+"""Navigators: one module each, with a YAML file each in ``conf/navigator``."""

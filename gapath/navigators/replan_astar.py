@@ -1,0 +1,38 @@
+"""Repeated A*: plan anew, from scratch, whenever the current path is blocked.
+
+What a robotics engineer would try first. Unknown fields count as free, so where the target
+can be reached at all it is reached.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gapath.graph import shortest_path
+from gapath.kernels.field_of_view import remaining_cost
+from gapath.navigation import Call, Decision, Query, StreamOf
+from gapath.past_path import Track
+
+
+@dataclass(frozen=True)
+class Navigator:
+    """A* from the robot's field on the known map; it has no settings."""
+
+    def begin(self, query: Query) -> Track:
+        """Begin without a path."""
+        return Track((query.start,))
+
+    def step(
+        self, state: Track, query: Query, news: NDArray[np.int64], streams: StreamOf
+    ) -> Decision:
+        """Go on while the path is free; else plan, and without a path go back a field.
+
+        On the way back it plans in every step, because the map may have changed.
+        """
+        table, rule = query.map.table, int(query.corner_cutting)
+        if state.path is not None and remaining_cost(table, state.path, state.at, rule) >= 0:
+            return state.go_on()
+        plan = shortest_path(query)
+        calls = (Call("A" if state.returning else "C", 0, plan, plan.feasible),)
+        return state.adopt(plan.path).go_on(calls) if plan.feasible else state.go_back(calls)

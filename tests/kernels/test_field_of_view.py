@@ -1,0 +1,117 @@
+"""The robot's view against its description, all eight headings (KG18 Sec. 5)."""
+
+import itertools
+
+import naive
+import naive_drive
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from strategies import RULES, weights
+
+from gapath.grid import OBSTACLE, GridMap
+from gapath.kernels.field_of_view import heading_of, remaining_cost, sense
+
+
+def see(table, place, heading, layers, occlusion):
+    """Look once on a map of which nothing is known; give the fields seen."""
+    known = np.full(table.shape, -1, dtype=np.int32)
+    seen = np.zeros(table.shape, dtype=np.bool_)
+    news = np.empty((layers + 1) ** 2, dtype=np.int64)
+    count = sense(table, known, seen, *place, heading, layers, occlusion, news)
+    fields = {(int(i) % table.shape[1], int(i) // table.shape[1]) for i in news[:count]}
+    assert len(fields) == count
+    assert fields == {(int(x), int(y)) for y, x in np.argwhere(seen)}
+    assert (known == np.where(seen, table, -1)).all()
+    return fields
+
+
+@given(
+    weights(),
+    st.integers(0, 1000),
+    st.integers(0, 7),
+    st.integers(0, 6),
+    st.booleans(),
+)
+def test_view_equals_its_description(values, at, heading, layers, occlusion):
+    table = GridMap("random", values).table
+    place = (at % table.shape[1], at // table.shape[1] % table.shape[0])
+    expected = naive_drive.view(table, place, heading, layers, occlusion)
+    assert see(table, place, heading, layers, occlusion) == expected
+
+
+@pytest.mark.parametrize("heading", range(8))
+def test_layer_x_has_2_x_plus_1_fields(heading):
+    table = np.zeros((41, 41), dtype=np.int32)
+    before = set()
+    for layers in range(11):
+        fields = see(table, (20, 20), heading, layers, False)
+        assert len(fields - before) == 2 * layers + 1  # KG18 eq. (7)
+        assert before < fields
+        before = fields
+
+
+def test_only_what_is_new_or_changed_is_news():
+    table = np.zeros((9, 9), dtype=np.int32)
+    known, seen = np.zeros_like(table), np.zeros(table.shape, dtype=np.bool_)
+    news = np.empty(9, dtype=np.int64)
+    look = (known, seen, 4, 4, 0, 2, False, news)
+    assert sense(table, *look) == 9
+    assert sense(table, *look) == 0
+    table[4, 6] = OBSTACLE
+    assert sense(table, *look) == 1
+    assert news[0] == 4 * 9 + 6
+    table[4, 6] = 0
+    assert sense(table, *look) == 1
+    assert known[4, 6] == 0
+
+
+def test_an_obstacle_hides_what_lies_behind_it_but_not_itself():
+    table = np.zeros((9, 9), dtype=np.int32)
+    table[3:6, 5] = OBSTACLE
+    seen = see(table, (4, 4), 0, 4, True)
+    assert {(5, 3), (5, 4), (5, 5)} <= seen
+    assert not {(x, y) for x, y in seen if x > 5}
+    assert see(table, (4, 4), 0, 4, False) > seen
+
+
+@pytest.mark.parametrize("heading", range(8))
+def test_neighbours_are_never_hidden(heading):
+    """A diagonal step shows both fields beside it: corners are known before they are passed."""
+    table = np.full((5, 5), OBSTACLE, dtype=np.int32)
+    assert len(see(table, (2, 2), heading, 1, True)) == 4
+
+
+@given(st.integers(-50, 50), st.integers(-50, 50))
+def test_headings(dx, dy):
+    heading = heading_of(dx, dy)
+    if max(abs(dx), abs(dy)) == 0:
+        assert heading == 0
+        return
+    x, y = naive_drive.HEADINGS[heading]
+    assert heading == naive_drive.heading_of(dx, dy)
+    assert x * dx >= 0 and y * dy >= 0 and x * dx + y * dy > 0
+    assert heading_of(-dx, -dy) == (heading + 4) % 8
+
+
+def test_headings_of_steps():
+    assert [heading_of(*step) for step in naive_drive.HEADINGS] == list(range(8))
+
+
+@given(weights(), st.integers(0, 2), st.data())
+def test_remaining_cost(values, rule, data):
+    table = GridMap("random", values).table
+    rows, cols = table.shape
+    x, y = data.draw(st.integers(0, cols - 1)), data.draw(st.integers(0, rows - 1))
+    fields = [(x, y)]
+    for dx, dy in data.draw(st.lists(st.sampled_from(naive_drive.HEADINGS), max_size=12)):
+        x, y = min(max(x + dx, 0), cols - 1), min(max(y + dy, 0), rows - 1)
+        fields.append((x, y))
+    path = np.array(fields, dtype=np.int32)
+    first = data.draw(st.integers(0, len(path) - 1))
+    entries = table[path[first:, 1], path[first:, 0]]
+    steps = itertools.pairwise(map(tuple, path[first:].tolist()))
+    cut = any(naive.forbidden(values, a, b, RULES[rule]) for a, b in steps)
+    expected = -1 if cut or (entries == OBSTACLE).any() else entries.sum()
+    assert remaining_cost(table, path, first, rule) == expected

@@ -1,0 +1,79 @@
+"""The rivals: exact planners on what is known, in the same loop."""
+
+import numpy as np
+import pytest
+from drive_strategies import worlds
+from hypothesis import given
+
+from gapath.driving import Outcome, Sensor, drive
+from gapath.graph import shortest_path
+from gapath.grid import GridMap
+from gapath.known_map import KnownMap
+from gapath.navigation import Mode, Query
+from gapath.navigators import dstar_lite, replan_astar, straight_astar
+from gapath.problem import CornerCutting, Problem
+from gapath.world import Changes
+
+RIVALS = [dstar_lite.Navigator(), replan_astar.Navigator(), straight_astar.Navigator()]
+STATIC = Changes(0, 1, 1)
+RULES = list(CornerCutting)
+SENSOR = Sensor(4, False)
+
+
+@pytest.mark.parametrize("rival", RIVALS, ids=lambda rival: rival.__module__)
+@given(problem=worlds(RULES))
+def test_the_target_is_reached_wherever_it_can_be(rival, problem):
+    driven = drive(problem, rival, SENSOR, STATIC, 0, 0, 3000, 0.5)
+    reachable = shortest_path(problem).feasible
+    assert driven.outcome is (Outcome.REACHED if reachable else Outcome.RETURNED)
+
+
+@given(problem=worlds(RULES))
+def test_dstar_lite_is_on_a_cheapest_path_in_every_step(problem):
+    """Equal in cost to A* from scratch on what the robot knew when it decided."""
+    driven = drive(problem, RIVALS[0], Sensor(2, True), STATIC, 0, 0, 300, 0.5)
+    known = KnownMap(problem.map, problem.start, problem.target, 0.5)
+    place = problem.start
+    for frame, following in zip(driven.frames, driven.frames[1:], strict=False):
+        known.table.ravel()[frame.news] = frame.entries
+        known._least = 0  # the news came by without `look`
+        optimum = shortest_path(Query(known, place, problem.target, problem.corner_cutting))
+        path = following.decision.path
+        assert (path is not None) == optimum.feasible
+        if path is not None:
+            assert known.table[path[:, 1], path[:, 0]].sum() / 65536 == optimum.cost
+        place = following.place
+
+
+def wall_problem():
+    values = np.full((30, 60), 0.5)
+    values[8:20, 30] = 1.0
+    return Problem(GridMap("wall", values), (2, 12), (57, 12))
+
+
+def test_straight_astar_asks_only_at_the_wall_and_goes_straight_again_behind_it():
+    driven = drive(wall_problem(), RIVALS[2], SENSOR, STATIC, 0, 0, 2000, 0.5)
+    steps = driven.frames[1:]
+    asked = [i for i, frame in enumerate(steps) if frame.decision.calls]
+    places = [frame.place for frame in driven.frames]
+    assert places[asked[0]][0] >= 25
+    assert all(y == 12 for _, y in places[: asked[0] + 1])
+    behind = next(frame for frame in steps if frame.decision.moved.memory and frame.place[0] > 30)
+    x, y = behind.decision.path[0]
+    n = 57 - x
+    line = [y + np.floor(i * (12 - y) / n + 0.5) for i in range(n + 1)]
+    assert behind.decision.path[:, 1].tolist() == line
+
+
+def test_replan_astar_plans_only_when_its_path_is_blocked():
+    empty = Problem(GridMap("empty", np.full((30, 60), 0.5)), (2, 12), (57, 12))
+    for problem, least in ((empty, 1), (wall_problem(), 2)):
+        driven = drive(problem, RIVALS[1], SENSOR, STATIC, 0, 0, 2000, 0.5)
+        calls = [frame.decision.calls for frame in driven.frames[1:]]
+        assert calls[0] and sum(map(bool, calls)) >= least
+        assert sum(map(bool, calls)) < len(calls) / 3
+        for before, frame in zip(driven.frames, driven.frames[1:], strict=False):
+            if frame.decision.calls:
+                assert frame.decision.mode is Mode.REPLAN
+            elif before.decision is not None:
+                assert frame.decision.path.tolist() == before.decision.path[1:].tolist()
