@@ -30,6 +30,33 @@ def kinds() -> dict[str, str]:
     return found
 
 
+def kind_of(path: str, where: str) -> str:
+    """Tell which reader reads a file.
+
+    Parameters
+    ----------
+    path : str
+        The file.
+    where : str
+        The setting that names it, for messages.
+
+    Returns
+    -------
+    str
+        Name of a module of `gapath.mapio`.
+
+    Raises
+    ------
+    InputError
+        If no reader knows the file's ending.
+    """
+    known = kinds()
+    for suffix, kind in known.items():
+        if path.lower().endswith(suffix):
+            return kind
+    raise InputError(where, path, f"a file name ending in {', '.join(known)}")
+
+
 @dataclass(frozen=True)
 class Reader:
     """Reads a map file of any known format.
@@ -59,11 +86,7 @@ class Reader:
         InputError
             If no reader knows the file's ending, or its reader refuses the file.
         """
-        known = kinds()
-        for suffix, kind in known.items():
-            if self.path.lower().endswith(suffix):
-                return self._read_as(kind)
-        raise InputError("map.path", self.path, f"a file name ending in {', '.join(known)}")
+        return self._read_as(kind_of(self.path, "map.path"))
 
     def _read_as(self, kind: str) -> GridMap:
         text = (resources.files("gapath.conf") / "map" / f"{kind}.yaml").read_text("utf-8")

@@ -82,6 +82,20 @@ def test_no_polyline_of_four_pieces_joins_start_and_target_in_class_4():
         assert not (ahead & behind).any()
 
 
+def test_success_over_many_seeds_has_the_pattern_of_table_1():
+    """Maps 1 and 2 always, map 3 more often the better the setting, map 4 never."""
+    rates = {}
+    for name, seeds in [("1", 1000), ("2", 1000), ("3", 1000), ("4", 40)]:
+        p = problem(f"kg18_test{name}")
+        for setting, ga in GA.items():
+            plans = (ga.plan(p, rng.stream(0, trial)) for trial in range(seeds))
+            rates[name, setting] = 100 * sum(plan.feasible for plan in plans) / seeds
+    easy = {rates[name, setting] for name in "12" for setting in GA}
+    assert easy == {100}, rates
+    assert 60 <= rates["3", "ga1"] < rates["3", "ga2"] < rates["3", "ga3"] <= 99.9, rates
+    assert {rates["4", setting] for setting in GA} == {0}, rates
+
+
 @pytest.mark.parametrize(("name", "setting"), PAPER)
 def test_the_canonical_map_is_as_hard_as_the_papers(name, setting):
     """Each of the paper's executions lies in the central 95 % of ours."""
