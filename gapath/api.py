@@ -1,48 +1,14 @@
 """The library's three lines: load a map, plan on it, look at the plan."""
 
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-import yaml
-
-from gapath.config import build
+from gapath.components import build, yaml_values
 from gapath.errors import InputError, require
 from gapath.grid import Field, GridMap
 from gapath.mapio.file import kinds
 from gapath.problem import CornerCutting, Plan, Planner, Problem
 from gapath.simulation import plan_once
-
-
-def yaml_values(group: str, name: str) -> dict[str, Any]:
-    """Read a YAML of ``conf`` and those that its defaults list names.
-
-    Parameters
-    ----------
-    group : str
-        "map" or "planner".
-    name : str
-        For example "kg18_test3" or "ga3".
-
-    Returns
-    -------
-    dict
-        ``kind`` and the settings.
-
-    Raises
-    ------
-    InputError
-        If there is no such YAML.
-    """
-    folder = files("gapath.conf") / group
-    names = sorted(path.name[:-5] for path in folder.iterdir() if path.name.endswith(".yaml"))
-    require(name in names, group, repr(name), f"one of {', '.join(names)}")
-    own: dict[str, Any] = yaml.safe_load((folder / f"{name}.yaml").read_text("utf-8"))
-    bases = [base for base in own.pop("defaults", []) if base != "_self_"]
-    values: dict[str, Any] = {}
-    for base in bases:
-        values |= yaml_values(group, base)
-    return values | own
 
 
 def load_map(path: str | Path, **settings: Any) -> GridMap:

@@ -2,13 +2,13 @@
 
 import os
 import shlex
-import statistics
 import sys
 import traceback
 from typing import NoReturn
 
 from hydra import compose
 from hydra import main as hydra_main
+from hydra.core.global_hydra import GlobalHydra
 from hydra.core.hydra_config import HydraConfig
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.errors import HydraException
@@ -17,9 +17,9 @@ from hydra.types import RunMode
 from omegaconf import DictConfig
 from omegaconf.errors import OmegaConfBaseException
 
-from gapath.config import Run, conf_folder, make_run
+from gapath.config import Run, conf_folder, make_run, method_name
 from gapath.errors import InputError
-from gapath.experiment import Outcome, TrialRow, execute
+from gapath.experiment import Outcome, execute
 
 BAD_INPUT, FAILED, INTERRUPTED = 2, 1, 130
 
@@ -28,25 +28,6 @@ BAD_CONFIGURATION = (InputError, HydraException, OmegaConfBaseException)
 
 class JobFailed(Exception):
     """A job failed and has said why; carries the exit code."""
-
-
-def planner_name(choice: str, overrides: list[str]) -> str:
-    """Name a planner by its YAML and the values that replace the YAML's.
-
-    Parameters
-    ----------
-    choice : str
-        Name of the YAML in ``conf/planner``.
-    overrides : list of str
-        Hydra overrides of the job.
-
-    Returns
-    -------
-    str
-        For example "ga3" or "ga3[population=60]".
-    """
-    values = sorted(o.removeprefix("planner.") for o in overrides if o.startswith("planner."))
-    return f"{choice}[{','.join(values)}]" if values else choice
 
 
 class SweepCheck(Callback):  # type: ignore[misc]
@@ -60,12 +41,16 @@ class SweepCheck(Callback):  # type: ignore[misc]
         from hydra._internal.core_plugins.basic_sweeper import BasicSweeper
 
         given = [f"{key}={value}" for key, value in (config.hydra.sweeper.params or {}).items()]
-        parsed = OverridesParser.create().parse_overrides([*given, *config.hydra.overrides.task])
+        loader = GlobalHydra.instance().config_loader()
         try:
+            parser = OverridesParser.create(config_loader=loader)
+            parsed = parser.parse_overrides([*given, *config.hydra.overrides.task])
             for overrides in BasicSweeper.split_arguments(parsed, None)[0]:
                 make_run(compose("config", overrides=overrides), "")
-        except BAD_CONFIGURATION as error:
+        except Exception as error:
             sys.exit(complain(error))
+        # Hydra would compose every job once more, only to see whether it can be composed.
+        BasicSweeper.validate_batch_is_legal = lambda self, batch: None
 
 
 def job(config: DictConfig) -> None:
@@ -80,9 +65,9 @@ def job(config: DictConfig) -> None:
     sweep = hydra.mode == RunMode.MULTIRUN
     overrides = list(hydra.overrides.task)
     try:
-        run = make_run(config, planner_name(hydra.runtime.choices.planner, overrides))
+        run = make_run(config, method_name(config, hydra.runtime.choices))
         outcome = execute(run, command(overrides))
-    except InputError as error:
+    except BAD_CONFIGURATION as error:
         fail(complain(error), sweep)
     except Exception:
         traceback.print_exc()
@@ -114,8 +99,13 @@ def fail(code: int, sweep: bool) -> NoReturn:
 
 def complain(error: Exception) -> int:
     """Print what is wrong with the input and give the exit code."""
-    reason = str(error).partition("\nConfig search path")[0]
-    cause = str(error.__cause__ or "").partition("\n")[0]
+    if isinstance(error, OSError) and not isinstance(error, HydraException):
+        error = InputError(
+            "output", error.filename, f"a folder that can be written ({error.strerror})"
+        )
+    reason = str(error).partition("\nConfig search path")[0] or type(error).__name__
+    hidden = error.__cause__ if isinstance(error, HydraException) else None
+    cause = str(hidden or "").partition("\n")[0]
     print(f"gapath: {reason}{f' ({cause})' if cause else ''}", file=sys.stderr, flush=True)
     return BAD_INPUT
 
@@ -139,69 +129,35 @@ def describe(run: Run, outcome: Outcome, short: bool) -> str:
     """
     grid = run.problem.map
     instance = f"#{grid.instance}" if grid.instance else ""
-    what = f"{grid.name}{instance} {run.planner_name}"
+    what = f"{grid.name}{instance} {run.method}"
     if outcome.state == "skipped":
         return f"{what}: skipped, {outcome.folder} is whole (force=true runs it again)"
     if outcome.state == "busy":
         return f"{what}: skipped, another process is working on {outcome.folder}"
     rows = outcome.rows
     if short:
-        found = sum(row.feasible for row in rows)
-        return (
-            f"{what}: {found} of {len(rows)} found, median {_milliseconds(rows)}, {outcome.folder}"
-        )
+        return f"{what}: {run.task.line(rows)}, {outcome.folder}"
     marked = f" ({grid.source})" if grid.source == "reconstructed" else ""
     lines: dict[str, object] = {
         "map": f"{grid.name}{instance}{marked}, {grid.cols} x {grid.rows} fields"
     }
-    lines["planner"] = run.planner_name
-    lines |= _one(rows[0]) if len(rows) == 1 else _many(rows)
+    lines["navigator" if run.task.name == "drive" else "planner"] = run.method
+    lines |= run.task.summary(rows)
     table = "\n".join(f"{name:<14}{value}" for name, value in lines.items())
     files = "\n".join(f"  {outcome.folder / name}" for name in outcome.files)
     return f"{table}\n\nfiles\n{files}"
 
 
-def _one(row: TrialRow) -> dict[str, object]:
-    return {
-        "seed": row.seed,
-        "status": row.status,
-        "cost": f"{row.cost:g}",
-        "optimal cost": f"{row.optimal_cost:g}",
-        "epochs": row.epochs,
-        "evaluations": row.evaluations,
-        "expansions": row.expansions,
-        "time": _milliseconds([row]),
-    }
-
-
-def _many(rows: list[TrialRow]) -> dict[str, object]:
-    found = [row for row in rows if row.feasible]
-    lines: dict[str, object] = {
-        "trials": len(rows),
-        "found": f"{len(found)} ({100 * len(found) / len(rows):.1f} %)",
-        "optimal cost": f"{rows[0].optimal_cost:g}",
-        "median time": _milliseconds(rows),
-    }
-    if found:
-        lines["median cost"] = f"{statistics.median(row.cost for row in found):g}, of paths found"
-        lines["median epochs"] = (
-            f"{statistics.median(row.epochs for row in found):g}, of paths found"
-        )
-    return lines
-
-
-def _milliseconds(rows: list[TrialRow]) -> str:
-    return f"{1000 * statistics.median(row.plan_time_s for row in rows):.3g} ms"
-
-
 def main() -> None:
     """Run the command ``gapath``; exits with 0, 1 (a job failed) or 2 (bad input)."""
-    os.environ.setdefault("HYDRA_FULL_ERROR", "1")  # errors come here instead of being printed
+    os.environ["HYDRA_FULL_ERROR"] = "1"  # errors come here instead of being printed
     try:
         hydra_main(version_base="1.3", config_path=conf_folder(), config_name="config")(job)()
     except JobFailed as failure:
         sys.exit(failure.args[0])
-    except (*BAD_CONFIGURATION, OSError) as error:
-        sys.exit(complain(error))
     except KeyboardInterrupt:
         sys.exit(INTERRUPTED)
+    except BrokenPipeError:  # gapath --help | head
+        sys.stderr.close()
+    except Exception as error:  # a job catches its own: this is a command line that is wrong
+        sys.exit(complain(error))

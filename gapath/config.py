@@ -1,24 +1,26 @@
-"""YAML to dataclasses; with `cli` the only place that knows Hydra and OmegaConf."""
+"""From a composed configuration to a checked run."""
 
 import dataclasses
-import importlib
-import pkgutil
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib.resources import files
-from typing import Any, get_type_hints
+from pathlib import Path
+from typing import Any
 
-from omegaconf import DictConfig, ListConfig, OmegaConf
-from omegaconf.errors import ConfigKeyError, OmegaConfBaseException
+import yaml
+from omegaconf import DictConfig, OmegaConf
 
-from gapath.errors import InputError, require
+from gapath.components import build, typed, yaml_names, yaml_values
+from gapath.drive_task import DriveTask
+from gapath.driving import Sensor
+from gapath.errors import require
 from gapath.events import Recorder
 from gapath.grid import GridMap
-from gapath.problem import CornerCutting, Planner, Problem
-
-PACKAGES = {"map": "gapath.mapio", "planner": "gapath.planners", "recorder": "gapath.recorders"}
-"""Configuration group -> the package whose modules its ``kind`` names."""
-
-TARGETS = {"map": "Reader", "planner": "Planner", "recorder": "Recorder"}
+from gapath.mapio import file
+from gapath.plan_task import PlanTask
+from gapath.problem import CornerCutting, Problem
+from gapath.task import Task
+from gapath.world import Changes
 
 
 @dataclass
@@ -27,10 +29,14 @@ class Settings:
 
     Parameters
     ----------
+    task : str
+        "plan" on a known map, or "drive" through an unknown one.
     name : str
         The experiment: run folders lie in ``<output>/<name>``.
-    map, planner, recorder : dict
-        The chosen components.
+    map, planner, navigator, recorder : dict
+        The chosen components; a task uses the planner or the navigator.
+    drive : dict
+        `DriveSettings`.
     seed, trials : int
         Trials 0 to trials - 1 use the random streams (seed, trial).
     corner_cutting : str
@@ -41,15 +47,57 @@ class Settings:
         Run again what is there already.
     """
 
+    task: str
     name: str
     map: dict[str, Any]
     planner: dict[str, Any]
+    navigator: dict[str, Any]
+    drive: dict[str, Any]
     recorder: dict[str, Any]
     seed: int
     trials: int
     corner_cutting: str
     output: str
     force: bool
+
+
+@dataclass
+class DriveSettings:
+    """What a drive needs besides a map and a navigator.
+
+    Parameters
+    ----------
+    sensor : dict
+        `gapath.driving.Sensor`.
+    changes : dict
+        `gapath.world.Changes`.
+    step_limit : int
+        Steps after which a drive has overrun.
+    unknown_weight : float
+        What an unknown field counts.
+    known_map : str or None
+        A map file: what the robot knows before it starts.
+    """
+
+    sensor: dict[str, Any]
+    changes: dict[str, Any]
+    step_limit: int
+    unknown_weight: float
+    known_map: str | None
+
+    def __post_init__(self) -> None:
+        require(
+            1 <= self.step_limit <= 10**6,
+            "drive.step_limit",
+            self.step_limit,
+            "an integer from 1 to 1000000",
+        )
+        require(
+            0 <= self.unknown_weight < 1,
+            "drive.unknown_weight",
+            self.unknown_weight,
+            "a number in [0, 1)",
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,12 +108,12 @@ class Run:
     ----------
     experiment : str
         Name of the experiment.
-    planner_name : str
-        Name of the planner's YAML, with the values that were overridden.
+    method : str
+        Name of the planner's or navigator's YAML, with the values that were overridden.
     problem : Problem
         Map, start, target, corner-cutting rule.
-    planner : Planner
-        The planner.
+    task : Task
+        To plan or to drive, and with what.
     recorders : list of Recorder
         The recorders.
     seed, trials : int
@@ -79,9 +127,9 @@ class Run:
     """
 
     experiment: str
-    planner_name: str
+    method: str
     problem: Problem
-    planner: Planner
+    task: Task
     recorders: list[Recorder] = field(repr=False)
     seed: int
     trials: int
@@ -95,122 +143,15 @@ def conf_folder() -> str:
     return str(files("gapath.conf"))
 
 
-def kinds(group: str) -> list[str]:
-    """List the modules that a group's ``kind`` can name.
-
-    Parameters
-    ----------
-    group : str
-        "map", "planner" or "recorder".
-
-    Returns
-    -------
-    list of str
-        Module names; those with a leading underscore are no components.
-    """
-    package = importlib.import_module(PACKAGES[group])
-    names = [module.name for module in pkgutil.iter_modules(package.__path__)]
-    return sorted(name for name in names if not name.startswith("_"))
-
-
-def build(group: str, values: dict[str, Any], where: str) -> Any:
-    """Make a component from its settings.
-
-    Parameters
-    ----------
-    group : str
-        "map", "planner" or "recorder".
-    values : dict
-        ``kind`` and the settings of that kind.
-    where : str
-        Where the values stand, for messages.
-
-    Returns
-    -------
-    Reader, Planner or Recorder
-        An instance of the class in the module that ``kind`` names.
-
-    Raises
-    ------
-    InputError
-        For an unknown kind, an unknown, missing or mistyped setting, or one out of range.
-    """
-    values = dict(values)
-    kind = values.pop("kind", None)
-    require(kind in kinds(group), f"{where}.kind", kind, f"one of {', '.join(kinds(group))}")
-    module = importlib.import_module(f"{PACKAGES[group]}.{kind}")
-    return typed(getattr(module, TARGETS[group]), values, where)
-
-
-def typed(target: type[Any], values: object, where: str) -> Any:
-    """Make a dataclass from loose values, checking names and types.
-
-    Parameters
-    ----------
-    target : type
-        A dataclass without defaults.
-    values : mapping
-        Its fields.
-    where : str
-        Where the values stand, for messages; "" for the root.
-
-    Returns
-    -------
-    object
-        An instance of the dataclass.
-
-    Raises
-    ------
-    InputError
-        For an unknown, missing or mistyped field.
-    """
-    prefix = f"{where}." if where else ""
-    names = [f.name for f in dataclasses.fields(target) if f.init]
-    if not names:
-        loose = values if isinstance(values, dict) else {}
-        require(not loose, f"{prefix}{next(iter(loose), '')}", "an unknown name", "no settings")
-        return target()
-    try:
-        hints = get_type_hints(target)
-        schema = dataclasses.make_dataclass(target.__name__, [(n, hints[n]) for n in names])
-        merged = OmegaConf.merge(OmegaConf.structured(schema), values)
-        for name in names:
-            require(not OmegaConf.is_missing(merged, name), prefix + name, "nothing", "a value")
-        checked = OmegaConf.to_container(merged, resolve=True)
-    except ConfigKeyError as error:
-        raise InputError(
-            f"{prefix}{error.key}", "an unknown name", f"one of {', '.join(names)}"
-        ) from error
-    except OmegaConfBaseException as error:
-        name = error.full_key or str(error.key or "")
-        raise InputError(prefix + name, _raw(values, name), _type_name(target, name)) from error
-    assert isinstance(checked, dict)
-    return target(**{name: checked[name] for name in names})
-
-
-def _raw(values: object, name: str) -> object:
-    value = values.get(name.split(".")[0].split("[")[0]) if isinstance(values, dict) else values
-    if isinstance(value, DictConfig | ListConfig):
-        value = OmegaConf.to_container(value)
-    return repr(value)
-
-
-def _type_name(target: type[Any], name: str) -> str:
-    types = {f.name: f.type for f in dataclasses.fields(target)}
-    wanted = types.get(name.split(".")[0].split("[")[0], "another value")
-    text = wanted.__name__ if isinstance(wanted, type) else str(wanted)
-    return f"a value of type {text.replace('typing.', '')}"
-
-
-def make_run(config: DictConfig, planner_name: str) -> Run:
+def make_run(config: DictConfig, method: str) -> Run:
     """Check a composed configuration and make everything that a run needs.
 
     Parameters
     ----------
     config : DictConfig
         As composed from ``conf``.
-    planner_name : str
-        Name of the planner's YAML, with the values that were overridden.
+    method : str
+        Name of the planner's or navigator's YAML, with the values that were overridden.
 
     Returns
     -------
@@ -224,29 +165,35 @@ def make_run(config: DictConfig, planner_name: str) -> Run:
     """
     loose = OmegaConf.to_container(config, resolve=True)
     settings: Settings = typed(Settings, loose, "")
-    require(1 <= settings.trials <= 10**7, "trials", settings.trials, "an integer from 1 to 10^7")
+    require(1 <= settings.trials <= 10**6, "trials", settings.trials, "an integer from 1 to 10^6")
     require(0 <= settings.seed < 2**64, "seed", settings.seed, "an integer in [0, 2^64)")
+    require(settings.output.strip() != "", "output", repr(settings.output), "a folder")
     require(
         settings.name.replace("_", "").replace("-", "").isalnum(),
         "name",
         repr(settings.name),
         "letters, digits, - and _",
     )
-    planner: Planner = build("planner", settings.planner, "planner")
-    recorders: list[Recorder] = [
-        build("recorder", values, f"recorder.{name}") for name, values in settings.recorder.items()
-    ]
-    problem = read_problem(settings)
+    used = {"plan": ("planner",), "drive": ("navigator", "drive")}
+    require(settings.task in used, "task", settings.task, f"one of {', '.join(used)}")
     kept = {
         key: value
         for key, value in dataclasses.asdict(settings).items()
-        if key not in ("output", "force")
+        if key not in ("output", "force", "planner", "navigator", "drive")
+        or key in used[settings.task]
     }
+    recorders: list[Recorder] = [
+        build("recorder", values, f"recorder.{name}") for name, values in settings.recorder.items()
+    ]
+    problem, task = read_problem(settings), make_task(kept)
+    task.check(problem)
+    for recorder in recorders:
+        recorder.check(settings.trials)
     return Run(
         settings.name,
-        planner_name,
+        method,
         problem,
-        planner,
+        task,
         recorders,
         settings.seed,
         settings.trials,
@@ -254,6 +201,108 @@ def make_run(config: DictConfig, planner_name: str) -> Run:
         settings.output,
         settings.force,
     )
+
+
+def method_name(config: DictConfig, choices: Mapping[str, str]) -> str:
+    """Name what a run tries: its planner's or navigator's YAML, and what differs from it.
+
+    Parameters
+    ----------
+    config : DictConfig
+        As composed from ``conf``.
+    choices : mapping
+        Configuration group -> name of the chosen YAML.
+
+    Returns
+    -------
+    str
+        For example "ga3", "ga3[population=60]" or "kg18[corner_cutting=forbid,sensor.range=8]".
+    """
+    group = "navigator" if config.get("task") == "drive" else "planner"
+    loose = OmegaConf.to_container(config)
+    assert isinstance(loose, dict)
+    plain = yaml.safe_load((files("gapath.conf") / "config.yaml").read_text("utf-8"))
+    given = _leaves(loose.get(group)) | {"corner_cutting": loose.get("corner_cutting")}
+    usual = {"corner_cutting": plain["corner_cutting"]}
+    if choices[group] in yaml_names(group):
+        usual |= _leaves(yaml_values(group, choices[group]))
+    else:  # a YAML of the user's own
+        usual |= _leaves(loose.get(group))
+    if group == "navigator":
+        given |= _leaves(loose.get("drive"))
+        given["known_map"] = given["known_map"] and Path(str(given["known_map"])).stem
+        usual |= _leaves(plain["drive"])
+    changed = [f"{name}={value}" for name, value in given.items() if usual.get(name) != value]
+    return f"{choices[group]}[{','.join(sorted(changed))}]" if changed else choices[group]
+
+
+def _leaves(value: object, name: str = "") -> dict[str, object]:
+    """Flatten nested settings: dotted name -> value."""
+    if isinstance(value, dict):
+        items = [(f"{name}.{key}".lstrip("."), item) for key, item in value.items()]
+    elif isinstance(value, list):
+        items = [(f"{name}[{i}]", item) for i, item in enumerate(value)]
+    else:
+        return {name: value}
+    return {leaf: item for key, part in items for leaf, item in _leaves(part, key).items()}
+
+
+def make_task(settings: dict[str, Any]) -> Task:
+    """Make the task that settings describe.
+
+    Parameters
+    ----------
+    settings : dict
+        With ``task``, and ``planner`` or ``navigator`` and ``drive``.
+
+    Returns
+    -------
+    Task
+        To plan or to drive.
+
+    Raises
+    ------
+    InputError
+        If a setting is unknown, missing, mistyped or out of range.
+    """
+    if settings["task"] == "plan":
+        return PlanTask(build("planner", settings["planner"], "planner"))
+    drive: DriveSettings = typed(DriveSettings, settings["drive"], "drive")
+    before = None if drive.known_map is None else read_known_map(drive.known_map)
+    return DriveTask(
+        build("navigator", settings["navigator"], "navigator"),
+        typed(Sensor, drive.sensor, "drive.sensor"),
+        typed(Changes, drive.changes, "drive.changes"),
+        drive.step_limit,
+        drive.unknown_weight,
+        before,
+    )
+
+
+def read_known_map(path: str) -> GridMap:
+    """Read what a robot knows before it starts: what that map calls unknown stays unknown.
+
+    Parameters
+    ----------
+    path : str
+        A map file.
+
+    Returns
+    -------
+    GridMap
+        Its obstacles are known, everything else is not.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be used.
+    """
+    kind = file.kind_of(path, "drive.known_map")
+    values = yaml_values("map", kind) | {"path": path}
+    if "unknown" in values:
+        values["unknown"] = "free"
+    grid: GridMap = build("map", values, "drive.known_map").read()
+    return grid
 
 
 def read_problem(settings: Settings) -> Problem:
@@ -273,8 +322,8 @@ def read_problem(settings: Settings) -> Problem:
     return Problem(grid, grid.start, grid.target, rule)
 
 
-def planner_from_settings(settings: str) -> Planner:
-    """Make the planner that a log's settings describe.
+def task_from_settings(settings: str) -> Task:
+    """Make the task that a log's settings describe.
 
     Parameters
     ----------
@@ -283,8 +332,8 @@ def planner_from_settings(settings: str) -> Planner:
 
     Returns
     -------
-    Planner
-        The planner.
+    Task
+        To plan or to drive.
 
     Raises
     ------
@@ -292,12 +341,7 @@ def planner_from_settings(settings: str) -> Planner:
         If the settings are not those of this version.
     """
     loose = OmegaConf.to_container(OmegaConf.create(settings))
-    require(
-        isinstance(loose, dict) and isinstance(loose.get("planner"), dict),
-        "settings of the log",
-        "no planner",
-        "the settings of a run",
-    )
+    known = isinstance(loose, dict) and loose.get("task") in ("plan", "drive")
+    require(known, "settings of the log", "no known task", "the settings of a run")
     assert isinstance(loose, dict)
-    planner: Planner = build("planner", loose["planner"], "planner")
-    return planner
+    return make_task({str(key): value for key, value in loose.items()})

@@ -1,7 +1,8 @@
 """The records that a run emits, and what every recorder must offer.
 
 Log, recording, table row and figure are all made from these. Time is the step index: a
-trial takes one step for each epoch, and one if its planner has no epochs.
+planning trial takes one step for each epoch, and one if its planner has no epochs; a drive
+takes one for its first look and one for each step of the robot.
 """
 
 from dataclasses import dataclass, field
@@ -10,6 +11,7 @@ from typing import Protocol, TypeAlias, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
+from gapath.grid import Field
 from gapath.problem import Evolution, PlanStatus, Problem
 
 
@@ -20,7 +22,9 @@ class RunStarted:
     Parameters
     ----------
     experiment, planner : str
-        Names as in the configuration.
+        Names as in the configuration; the navigator's name where the task is to drive.
+    task : str
+        "plan" or "drive".
     problem : Problem
         Map, start, target and corner-cutting rule.
     seed, trials : int
@@ -30,13 +34,15 @@ class RunStarted:
     versions : dict of str to str
         Versions of gapath and of what it stands on.
     optimal_path : (n, 2) int32
-        A path of least cost (KG18 eq. (5)) as (x, y); empty where none exists.
+        A path of least cost (KG18 eq. (5)), for a drive one of fewest steps on the true map,
+        as (x, y); empty where none exists.
     optimal_cost : float
         Its cost; infinite where none exists.
     """
 
     experiment: str
     planner: str
+    task: str
     problem: Problem
     seed: int
     trials: int
@@ -79,16 +85,120 @@ class TrialFinished:
     path: NDArray[np.int32] = field(repr=False)
 
 
+@dataclass(frozen=True, eq=False)
+class Stepped:
+    """A robot looked around and moved, or stood (the first look of a drive: stood).
+
+    Parameters
+    ----------
+    step, trial : int
+        When, and in which trial.
+    place : (x, y)
+        The robot's field after the step.
+    heading : int
+        Where it looked: 0 (+x) to 7, clockwise with y down.
+    mode : int
+        A `gapath.navigation.Mode`.
+    fields : (n, 2) int32
+        Fields as (x, y) that it saw for the first time or changed.
+    entries : (n,) int32
+        Their table entries (`gapath.grid`).
+    seconds : float
+        Wall time of the step; not in the log, so NaN in events that were read back.
+    """
+
+    step: int
+    trial: int
+    place: Field
+    heading: int
+    mode: int
+    fields: NDArray[np.int32] = field(repr=False)
+    entries: NDArray[np.int32] = field(repr=False)
+    seconds: float
+
+
+@dataclass(frozen=True, eq=False)
+class Called:
+    """A navigator called a planner in this step, before the robot moved.
+
+    Parameters
+    ----------
+    step, trial : int
+        When, and in which trial.
+    part : str
+        A, B or C (KG18 Figs 12-14).
+    index : int
+        Number of the planner in its part's list.
+    adopted : bool
+        Whether its path became the current one.
+    status, cost, epochs, evaluations, expansions, path
+        As in `gapath.problem.Plan`.
+    """
+
+    step: int
+    trial: int
+    part: str
+    index: int
+    adopted: bool
+    status: PlanStatus
+    cost: float
+    epochs: int
+    evaluations: int
+    expansions: int
+    path: NDArray[np.int32] = field(repr=False)
+
+
+@dataclass(frozen=True, eq=False)
+class PathsChanged:
+    """The path that the robot follows, or the way back, is another one from this step on.
+
+    Parameters
+    ----------
+    step, trial : int
+        When, and in which trial.
+    path : (n, 2) int32
+        The current path from the robot's field on; empty if it has none.
+    past : (m, 2) int32
+        The past path, the robot's own field last; what is only longer by the robot's moves
+        since, or shorter by its way back, is no change.
+    """
+
+    step: int
+    trial: int
+    path: NDArray[np.int32] = field(repr=False)
+    past: NDArray[np.int32] = field(repr=False)
+
+
+@dataclass(frozen=True)
+class DriveFinished:
+    """A drive ended at this step: a `gapath.driving.Outcome` and its number of steps."""
+
+    step: int
+    trial: int
+    outcome: int
+    steps: int
+
+
 @dataclass(frozen=True)
 class RunFinished:
-    """The last event of a run that was not interrupted."""
+    """The last event of a run that was not interrupted; counts trials that found the target."""
 
     step: int
     trials: int
     found: int
 
 
-Event: TypeAlias = RunStarted | TrialStarted | Evolved | TrialFinished | RunFinished
+Event: TypeAlias = (
+    RunStarted
+    | TrialStarted
+    | Evolved
+    | TrialFinished
+    | Stepped
+    | Called
+    | PathsChanged
+    | DriveFinished
+    | RunFinished
+)
 
 
 @runtime_checkable
@@ -98,6 +208,9 @@ class Recorder(Protocol):
     A dataclass whose fields are the settings of its YAML file in ``conf/recorder``.
     Files are written under a name that ends in ``.part`` until `close` renames them.
     """
+
+    def check(self, trials: int) -> None:
+        """Raise InputError if a run of so many trials cannot be recorded as set."""
 
     def open(self, folder: str) -> None:
         """Prepare to write files into an existing folder."""

@@ -15,8 +15,11 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
+import yaml
+
 from gapath.durable import write_whole
 from gapath.errors import InputError
+from gapath.problem import Problem
 
 VERSIONED = ("gapath", "numpy", "numba", "mcap", "rosbags", "rerun-sdk", "hydra-core", "pyarrow")
 
@@ -39,6 +42,8 @@ def code_hash() -> str:
     package = Path(__file__).parent
     digest = hashlib.sha256()
     for path in sorted(package.rglob("*.py"), key=lambda path: path.as_posix()):
+        if "pipelines" in path.parts:  # in a wheel; they change no run
+            continue
         digest.update(path.relative_to(package).as_posix().encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()[:16]
 
@@ -58,25 +63,49 @@ def versions() -> dict[str, str]:
     return {"python": platform.python_version(), "code": code_hash(), **found}
 
 
-def run_key(settings: str, planner_name: str, map_digest: str) -> str:
-    """Name a run by everything that its results depend on.
+def setting_hash(settings: str, method: str, problem: Problem) -> str:
+    """Hash what two runs must share to try the same thing, with whatever code and however often.
 
     Parameters
     ----------
     settings : str
         The resolved configuration.
-    planner_name : str
-        The planner's name in tables.
-    map_digest : str
-        `GridMap.digest`: a file named by the settings may have changed.
+    method : str
+        The planner's or navigator's name in tables.
+    problem : Problem
+        Map, start, target: files named by the settings may have changed.
 
     Returns
     -------
     str
         Sixteen hexadecimal digits.
     """
-    parts = "\0".join([settings, planner_name, map_digest, code_hash(), metadata.version("gapath")])
-    return hashlib.sha256(parts.encode()).hexdigest()[:16]
+    kept = {k: v for k, v in yaml.safe_load(settings).items() if k not in ("trials", "recorder")}
+    ends = f"{problem.start} {problem.target}"
+    text = "\0".join([json.dumps(kept, sort_keys=True), method, problem.map.digest, ends])
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def run_key(settings: str, method: str, problem: Problem) -> str:
+    """Name a run by everything that its results depend on.
+
+    Parameters
+    ----------
+    settings : str
+        The resolved configuration.
+    method : str
+        The planner's or navigator's name in tables.
+    problem : Problem
+        Map, start, target: files named by the settings may have changed.
+
+    Returns
+    -------
+    str
+        Sixteen hexadecimal digits.
+    """
+    ends = f"{problem.start} {problem.target}"
+    parts = [settings, method, problem.map.digest, ends, code_hash(), metadata.version("gapath")]
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:16]
 
 
 def sha256(path: Path) -> str:
@@ -158,10 +187,10 @@ class RunFolder:
         """Write a JSON file, whole."""
         write_whole(self.path / name, (json.dumps(content, indent=2) + "\n").encode())
 
-    def clear(self) -> None:
-        """Remove what an earlier run left, the lock apart."""
+    def keep_only(self, names: list[str]) -> None:
+        """Remove what an earlier run left, once this one is whole."""
         for path in self.path.iterdir():
-            if path.name != LOCK and path.is_file():
+            if path.name not in (*names, LOCK, STATUS, MANIFEST) and path.is_file():
                 path.unlink()
 
     def is_whole(self) -> bool:

@@ -1,8 +1,10 @@
 """The command: what it prints, writes and refuses."""
 
 import json
+import signal
 import subprocess
 import sys
+import time
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -75,7 +77,7 @@ def test_a_run_that_another_process_holds_is_left_alone(gapath, tmp_path):
 
 def test_a_sweep_does_every_setting_and_goes_on_after_a_failure(gapath, tmp_path, monkeypatch):
     def fail(run, command):
-        if run.planner_name == "ga1[population=8]":
+        if run.method == "ga1[population=8]":
             raise RuntimeError("no luck")
         return execute(run, command)
 
@@ -110,7 +112,7 @@ def test_a_walled_in_target_is_a_row_not_a_crash(gapath, tmp_path):
 
 
 def test_a_failing_run_says_so_in_its_folder(gapath, tmp_path, monkeypatch):
-    monkeypatch.setattr("gapath.experiment.clearances", lambda grid: 1 / 0)
+    monkeypatch.setattr("gapath.plan_task.clearances", lambda grid: 1 / 0)
     code, _, errors = gapath("map=kg18_test1")
     assert code == 1
     assert "ZeroDivisionError" in errors
@@ -123,7 +125,7 @@ def test_an_interrupted_run_says_so(gapath, tmp_path, monkeypatch):
     def interrupt(*arguments):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("gapath.experiment.clearances", interrupt)
+    monkeypatch.setattr("gapath.plan_task.clearances", interrupt)
     assert gapath("map=kg18_test1")[0] == cli.INTERRUPTED
     folder = only(tmp_path / "out" / "plan")
     assert json.loads((folder / "status.json").read_bytes())["state"] == "interrupted"
@@ -145,6 +147,20 @@ def test_an_interrupted_run_says_so(gapath, tmp_path, monkeypatch):
         (["+planner.colour=red"], "planner.colour: got an unknown name"),
         (["+colour=red"], "colour: got an unknown name"),
         (["planner=ga9"], "planner/ga9"),
+        (["planner=null"], "NoneType"),
+        (["~planner"], "planner"),
+        (["task=fly"], "task: got fly"),
+        (["task=drive", "drive.sensor.range=-1"], "drive.sensor.range: got -1"),
+        (["task=drive", "drive.sensor.colour=1"], "drive.sensor.colour"),
+        (["task=drive", "drive.step_limit=0"], "drive.step_limit: got 0"),
+        (["task=drive", "drive.unknown_weight=1"], "drive.unknown_weight: got 1"),
+        (["task=drive", "drive.changes.lifetime=0"], "drive.changes.lifetime: got 0"),
+        (["task=drive", "drive.known_map=gone.map"], "gone.map"),
+        (["task=drive", "navigator=pilot"], "navigator/pilot"),
+        (["task=drive", "navigator.explore_interval=0"], "navigator.explore_interval: got 0"),
+        (["task=drive", "navigator.retreat_interval=[3,2]"], "navigator.retreat_interval"),
+        (["task=drive", "navigator.explore.population=1"], "navigator.explore.population: got 1"),
+        (["task=drive", "navigator.explore.base=ga9"], "ga9"),
         (["planner.kind=os"], "planner.kind: got os"),
         (["map=nowhere"], "map/nowhere"),
         (["map.instance=-1"], "map.instance: got -1"),
@@ -202,14 +218,79 @@ def test_bad_input_is_one_clear_error(gapath, tmp_path, arguments, named):
     assert "Traceback" not in errors
     assert errors.startswith("gapath: ")
     assert text == ""
-    assert not list((tmp_path / "out").rglob("*.parquet"))
+    assert not (tmp_path / "out").exists()
 
 
-def test_an_output_that_is_a_file_is_refused(gapath, tmp_path):
+def test_values_that_differ_from_the_yaml_are_in_the_name(gapath):
+    plain = ["map=kg18_test1", "recorder=none"]
+    for extra, name in [
+        (["planner=ga1", "planner.population=40"], "ga1\n"),
+        (["planner=ga1", "++planner.population=8"], "ga1[population=8]\n"),
+        (["planner=astar", "corner_cutting=forbid"], "astar[corner_cutting=forbid]\n"),
+        (["planner=ga1", "seed=3"], "ga1\n"),
+    ]:
+        assert f"planner       {name}" in gapath(*plain, *extra)[1]
+
+
+def test_a_scenario_that_was_edited_is_another_run(gapath, tmp_path):
+    (tmp_path / "open.map").write_text(OPEN)
+    run = ["map=movingai", "map.path=open.map", "map.scenario=s.scen", "recorder=none"]
+    for target in ("4\t2", "4\t1"):
+        text = f"version 1\n0\topen.map\t5\t3\t0\t0\t{target}\t4\n"
+        (tmp_path / "s.scen").write_text(text)
+        assert ": skipped" not in gapath(*run)[1]
+    assert ": skipped" in gapath(*run)[1]
+
+
+def test_a_forced_run_that_fails_keeps_what_was_there(gapath, tmp_path, monkeypatch):
+    run = ["map=kg18_test1", "planner=astar", "recorder=none"]
+    gapath(*run)
+    folder = only(tmp_path / "out" / "plan")
+    before = (folder / "trials.parquet").read_bytes()
+    monkeypatch.setattr("gapath.plan_task.clearances", lambda grid: 1 / 0)
+    assert gapath(*run, "force=true")[0] == 1
+    assert (folder / "trials.parquet").read_bytes() == before
+
+
+def test_sweeps_may_name_maps_by_pattern(gapath):
+    code, text, _ = gapath("-m", "map=glob(kg18_test*)", "planner=astar", "recorder=none")
+    assert code == 0
+    assert text.count("1 of 1 found") == 4
+
+
+def test_a_real_interrupt_in_a_kernel_ends_the_run_cleanly(tmp_path):
+    """Control-C while machine code runs: exit code 130, and the folder says what happened."""
+    code = (
+        "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
+        "from gapath.cli import main; main()"
+    )
+    command = [sys.executable, "-c", code, "map=kg18_test4", "planner=ga3", "trials=100000"]
+    process = subprocess.Popen(
+        [*command, "recorder=none", f"output={tmp_path}"], stderr=subprocess.DEVNULL
+    )
+    try:
+        deadline = time.monotonic() + 60
+        while not list(tmp_path.rglob("config.yaml")):
+            assert process.poll() is None
+            assert time.monotonic() < deadline
+            time.sleep(0.05)
+        time.sleep(1.5)
+        process.send_signal(signal.SIGINT)
+        assert process.wait(30) == cli.INTERRUPTED
+    finally:
+        process.kill()
+        process.wait()
+    status = json.loads((only(tmp_path / "plan") / "status.json").read_bytes())
+    assert status["state"] == "interrupted"
+
+
+@pytest.mark.parametrize("flags", [[], ["-m"]])
+@pytest.mark.parametrize("output", ["taken", "/proc/none", "", "null"])
+def test_an_output_that_cannot_be_written_is_refused(gapath, tmp_path, output, flags):
     (tmp_path / "taken").write_text("mine")
-    code, _, errors = gapath("map=kg18_test1", output=tmp_path / "taken")
+    code, _, errors = gapath(*flags, "map=kg18_test1", f"output={output}", output=None)
     assert code == cli.BAD_INPUT
-    assert "taken" in errors
+    assert errors.startswith("gapath: output: got ")
     assert "Traceback" not in errors
     assert (tmp_path / "taken").read_text() == "mine"
 

@@ -7,13 +7,15 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
-from gapath import config, rng
-from gapath.api import yaml_values
+from gapath import components, config, rng
+from gapath.components import yaml_values
+from gapath.errors import InputError
 from gapath.events import Recorder, RunFinished
-from gapath.experiment import execute, run_started, trial_events
+from gapath.experiment import execute, run_started
 from gapath.graph import shortest_path
 from gapath.grid import GridMap
 from gapath.metrics import flaw
+from gapath.plan_task import PlanTask, trial_events
 from gapath.problem import CornerCutting, Plan, Planner, PlanStatus, Problem
 from gapath.simulation import plan_once, plan_trials
 
@@ -27,7 +29,7 @@ PLANNERS, RECORDERS, MAPS = yamls("planner"), yamls("recorder"), yamls("map")
 
 
 def make_planner(name, **values) -> Planner:
-    return config.build("planner", yaml_values("planner", name) | values, "planner")
+    return components.build("planner", yaml_values("planner", name) | values, "planner")
 
 
 def make_problem(rule=CornerCutting.ALLOW):
@@ -37,18 +39,18 @@ def make_problem(rule=CornerCutting.ALLOW):
     return Problem(GridMap("wall", weights), (2, 10), (27, 10), rule)
 
 
-@pytest.mark.parametrize("group", ["map", "planner", "recorder"])
+@pytest.mark.parametrize("group", ["map", "planner", "navigator", "recorder"])
 def test_every_module_has_a_yaml_and_every_yaml_a_module(group):
     named = {yaml_values(group, name)["kind"] for name in yamls(group)}
-    assert named == set(config.kinds(group))
+    assert named == set(components.kinds(group))
 
 
-@pytest.mark.parametrize("group", ["map", "planner", "recorder"])
+@pytest.mark.parametrize("group", ["map", "planner", "navigator", "recorder"])
 def test_every_value_of_a_yaml_is_a_field_without_default(group):
     for name in yamls(group):
         values = yaml_values(group, name)
-        module = import_module(f"{config.PACKAGES[group]}.{values.pop('kind')}")
-        target = getattr(module, config.TARGETS[group])
+        module = import_module(f"{components.PACKAGES[group]}.{values.pop('kind')}")
+        target = getattr(module, components.TARGETS[group])
         wanted = inspect.signature(target).parameters
         assert set(values) == set(wanted), name
         assert all(p.default is inspect.Parameter.empty for p in wanted.values()), name
@@ -112,11 +114,11 @@ def make_run(recorders, planner, tmp_path, trials=3):
         "contract",
         "any",
         make_problem(),
-        planner,
+        PlanTask(planner),
         recorders,
         4,
         trials,
-        f"planner: {yaml_values('planner', 'ga1')}\n",
+        f"task: plan\nplanner: {yaml_values('planner', 'ga1')}\n",
         str(tmp_path),
         False,
     )
@@ -126,7 +128,7 @@ def make_run(recorders, planner, tmp_path, trials=3):
 @pytest.mark.parametrize("planner_name", PLANNERS)
 def test_recorders_take_every_planners_events(name, planner_name, tmp_path):
     planner, problem = make_planner(planner_name), make_problem()
-    recorder = config.build("recorder", yaml_values("recorder", name), "recorder")
+    recorder = components.build("recorder", yaml_values("recorder", name), "recorder")
     assert isinstance(recorder, Recorder)
     optimum = shortest_path(problem)
     recorder.open(str(tmp_path))
@@ -145,7 +147,7 @@ def test_recorders_take_every_planners_events(name, planner_name, tmp_path):
 @pytest.mark.parametrize("name", RECORDERS)
 def test_a_recorder_that_is_aborted_leaves_no_file_that_looks_whole(name, tmp_path):
     planner, problem = make_planner("ga1"), make_problem()
-    recorder = config.build("recorder", yaml_values("recorder", name), "recorder")
+    recorder = components.build("recorder", yaml_values("recorder", name), "recorder")
     recorder.open(str(tmp_path))
     recorder.record(run_started(make_run([], planner, tmp_path), shortest_path(problem)))
     recorder.abort()
@@ -155,7 +157,10 @@ def test_a_recorder_that_is_aborted_leaves_no_file_that_looks_whole(name, tmp_pa
 @pytest.mark.parametrize("name", RECORDERS)
 def test_recording_changes_no_result(name, tmp_path):
     rows = []
-    for recorders in ([], [config.build("recorder", yaml_values("recorder", name), "recorder")]):
+    for recorders in (
+        [],
+        [components.build("recorder", yaml_values("recorder", name), "recorder")],
+    ):
         folder = tmp_path / str(len(recorders))
         outcome = execute(make_run(recorders, make_planner("ga1"), folder), "test", progress=False)
         rows.append([(r.status, r.cost, r.epochs, r.evaluations) for r in outcome.rows])
@@ -167,9 +172,9 @@ def test_map_readers_read_or_say_what_is_missing(name):
     values = yaml_values("map", name)
     if values.get("path") == "???":
         values["path"] = "no such file"
-        with pytest.raises(config.InputError, match="no such file"):
-            config.build("map", values, "map").read()
+        with pytest.raises(InputError, match="no such file"):
+            components.build("map", values, "map").read()
     else:
-        grid = config.build("map", values, "map").read()
+        grid = components.build("map", values, "map").read()
         assert isinstance(grid, GridMap)
         Problem(grid, grid.start, grid.target)

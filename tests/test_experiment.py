@@ -11,10 +11,11 @@ import pyarrow.parquet as pq
 import pytest
 
 from gapath import config, log_cli, runfolder
-from gapath.api import yaml_values
+from gapath.components import build, yaml_values
 from gapath.experiment import execute, replay_events
 from gapath.graph import shortest_path
-from gapath.mapio.reconstructed import Reader
+from gapath.mapio.reconstructed import Reader, generate
+from gapath.plan_task import PlanTask
 from gapath.problem import Problem
 from gapath.recorders.mcap import read_events
 
@@ -26,11 +27,11 @@ def make_run(folder, planner="ga3", map_class="kg18_test2", trials=3, recorders=
         "test",
         planner,
         Problem(grid, grid.start, grid.target),
-        config.build("planner", settings, "planner"),
-        [config.build("recorder", yaml_values("recorder", name), name) for name in recorders],
+        PlanTask(build("planner", settings, "planner")),
+        [build("recorder", yaml_values("recorder", name), name) for name in recorders],
         11,
         trials,
-        f"planner: {json.dumps(settings)}\n",
+        f"task: plan\nplanner: {json.dumps(settings)}\n",
         str(folder),
         False,
     )
@@ -64,15 +65,28 @@ def test_rows_and_log_agree(tmp_path):
 
 
 def test_other_settings_maps_and_code_are_other_runs(monkeypatch):
+    grid, other = generate("kg18_test1", 0), generate("kg18_test1", 1)
+    problem = Problem(grid, grid.start, grid.target)
     keys = {
-        runfolder.run_key("a", "ga1", "m"),
-        runfolder.run_key("b", "ga1", "m"),
-        runfolder.run_key("a", "ga2", "m"),
-        runfolder.run_key("a", "ga1", "n"),
+        runfolder.run_key("a: 1", "ga1", problem),
+        runfolder.run_key("a: 2", "ga1", problem),
+        runfolder.run_key("a: 1", "ga2", problem),
+        runfolder.run_key("a: 1", "ga1", Problem(other, grid.start, grid.target)),
+        runfolder.run_key("a: 1", "ga1", Problem(grid, grid.start, (97, 24))),
     }
     monkeypatch.setattr(runfolder, "code_hash", lambda: "other")
-    keys.add(runfolder.run_key("a", "ga1", "m"))
-    assert len(keys) == 5
+    keys.add(runfolder.run_key("a: 1", "ga1", problem))
+    assert len(keys) == 6
+
+
+def test_the_same_setting_with_other_code_or_more_trials_is_the_same_setting(monkeypatch):
+    grid = generate("kg18_test1", 0)
+    problem = Problem(grid, grid.start, grid.target)
+    settings = "seed: 1\ntrials: {}\nrecorder: {}\n"
+    few = runfolder.setting_hash(settings.format(3, "mcap"), "ga1", problem)
+    monkeypatch.setattr(runfolder, "code_hash", lambda: "other")
+    assert runfolder.setting_hash(settings.format(9, "none"), "ga1", problem) == few
+    assert runfolder.setting_hash("seed: 2\n", "ga1", problem) != few
 
 
 def test_a_killed_run_leaves_nothing_that_looks_whole(tmp_path):

@@ -13,10 +13,12 @@ from pathlib import Path
 import pytest
 from mcap.reader import make_reader
 
+from gapath.components import build, yaml_values
 from gapath.config import Run
 from gapath.experiment import execute
 from gapath.grid import GridMap
 from gapath.mapio.reconstructed import CLASSES, Reader
+from gapath.plan_task import PlanTask
 from gapath.problem import Problem
 from gapath.recorders import mcap
 
@@ -25,9 +27,6 @@ PLANNERS = ["ga1", "ga2", "ga3", "dijkstra", "astar"]
 
 
 def run(folder, map_class, planner, trials=2, **values):
-    from gapath.api import yaml_values
-    from gapath.config import build
-
     grid: GridMap = Reader(map_class, 0).read()
     settings = yaml_values("planner", planner) | values
     problem = Problem(grid, grid.start, grid.target)
@@ -38,11 +37,11 @@ def run(folder, map_class, planner, trials=2, **values):
             "golden",
             planner,
             problem,
-            made,
+            PlanTask(made),
             recorders,
             7,
             trials,
-            f"planner: {settings}\n",
+            f"task: plan\nplanner: {settings}\n",
             str(folder),
             False,
         ),
@@ -109,7 +108,6 @@ SMALL = ("kg18_test2", "ga1", 1)
     [
         {"NUMBA_DISABLE_JIT": "1"},
         {"NUMBA_CPU_NAME": "generic"},
-        {"NUMBA_NUM_THREADS": "1"},
         {"NUMBA_BOUNDSCHECK": "1"},
     ],
     ids=lambda environment: "=".join(*environment.items()),

@@ -1,0 +1,223 @@
+"""Components by name: a YAML's ``kind`` and settings become an object.
+
+With `config` and `cli` the only place that knows OmegaConf and Hydra.
+"""
+
+import dataclasses
+import importlib
+import pkgutil
+from importlib.resources import files
+from typing import Any, get_type_hints
+
+import yaml
+from omegaconf import DictConfig, ListConfig, OmegaConf
+from omegaconf.errors import ConfigKeyError, OmegaConfBaseException
+
+from gapath.errors import InputError, require
+
+PACKAGES = {
+    "map": "gapath.mapio",
+    "planner": "gapath.planners",
+    "navigator": "gapath.navigators",
+    "recorder": "gapath.recorders",
+}
+"""Configuration group -> the package whose modules its ``kind`` names."""
+
+TARGETS = {"map": "Reader", "planner": "Planner", "navigator": "Navigator", "recorder": "Recorder"}
+
+
+def yaml_names(group: str) -> list[str]:
+    """List the YAMLs of a group.
+
+    Parameters
+    ----------
+    group : str
+        A folder of ``conf``.
+
+    Returns
+    -------
+    list of str
+        File names without their ending.
+    """
+    folder = files("gapath.conf") / group
+    return sorted(path.name[:-5] for path in folder.iterdir() if path.name.endswith(".yaml"))
+
+
+def yaml_values(group: str, name: str) -> dict[str, Any]:
+    """Read a YAML of ``conf`` and those that its defaults list names.
+
+    Parameters
+    ----------
+    group : str
+        "map", "planner", "navigator" or "recorder".
+    name : str
+        For example "kg18_test3" or "ga3".
+
+    Returns
+    -------
+    dict
+        ``kind`` and the settings.
+
+    Raises
+    ------
+    InputError
+        If there is no such YAML.
+    """
+    names = yaml_names(group)
+    require(name in names, group, repr(name), f"one of {', '.join(names)}")
+    file = files("gapath.conf") / group / f"{name}.yaml"
+    own: dict[str, Any] = yaml.safe_load(file.read_text("utf-8"))
+    bases = [base for base in own.pop("defaults", []) if base != "_self_"]
+    values: dict[str, Any] = {}
+    for base in bases:
+        values |= yaml_values(group, base)
+    return values | own
+
+
+def kinds(group: str) -> list[str]:
+    """List the modules that a group's ``kind`` can name.
+
+    Parameters
+    ----------
+    group : str
+        "map", "planner", "navigator" or "recorder".
+
+    Returns
+    -------
+    list of str
+        Module names; those with a leading underscore are no components.
+    """
+    package = importlib.import_module(PACKAGES[group])
+    names = [module.name for module in pkgutil.iter_modules(package.__path__)]
+    return sorted(name for name in names if not name.startswith("_"))
+
+
+def build(group: str, values: dict[str, Any], where: str) -> Any:
+    """Make a component from its settings.
+
+    Parameters
+    ----------
+    group : str
+        "map", "planner", "navigator" or "recorder".
+    values : dict
+        ``kind`` and the settings of that kind.
+    where : str
+        Where the values stand, for messages.
+
+    Returns
+    -------
+    Reader, Planner or Recorder
+        An instance of the class in the module that ``kind`` names.
+
+    Raises
+    ------
+    InputError
+        For an unknown kind, an unknown, missing or mistyped setting, or one out of range.
+    """
+    values = dict(values)
+    kind = values.pop("kind", None)
+    require(kind in kinds(group), f"{where}.kind", kind, f"one of {', '.join(kinds(group))}")
+    module = importlib.import_module(f"{PACKAGES[group]}.{kind}")
+    target = getattr(module, TARGETS[group])
+    made = {
+        name: with_planners(value, f"{where}.{name}")
+        for name, value in checked(target, values, where).items()
+    }
+    try:
+        return target(**made)
+    except InputError as error:  # a component names its group; here it may stand elsewhere
+        place = error.where
+        if not place.startswith(f"{where}."):
+            place = place.replace(f"{group}.", f"{where}.", 1)
+        raise InputError(place, error.value, error.expected) from None
+
+
+def with_planners(value: Any, where: str) -> Any:
+    """Make the planners that a component's settings describe.
+
+    A planner among settings is a mapping with ``base``, the name of a YAML in
+    ``conf/planner``, and the values that replace the YAML's.
+
+    Parameters
+    ----------
+    value : object
+        A setting.
+    where : str
+        Where it stands, for messages.
+
+    Returns
+    -------
+    object
+        The setting, every such mapping in it replaced by a planner.
+    """
+    if isinstance(value, list):
+        return [with_planners(item, f"{where}[{i}]") for i, item in enumerate(value)]
+    if isinstance(value, dict) and "base" in value:
+        own = {key: item for key, item in value.items() if key != "base"}
+        return build("planner", yaml_values("planner", value["base"]) | own, where)
+    return value
+
+
+def typed(target: type[Any], values: object, where: str) -> Any:
+    """Make a dataclass from loose values, checking names and types.
+
+    Parameters
+    ----------
+    target : type
+        A dataclass without defaults.
+    values : mapping
+        Its fields.
+    where : str
+        Where the values stand, for messages; "" for the root.
+
+    Returns
+    -------
+    object
+        An instance of the dataclass.
+
+    Raises
+    ------
+    InputError
+        For an unknown, missing or mistyped field.
+    """
+    return target(**checked(target, values, where))
+
+
+def checked(target: type[Any], values: object, where: str) -> dict[str, Any]:
+    """Check names and types of a dataclass's fields, as `typed` does, without making it."""
+    prefix = f"{where}." if where else ""
+    names = [f.name for f in dataclasses.fields(target) if f.init]
+    if not names:
+        loose = values if isinstance(values, dict) else {}
+        require(not loose, f"{prefix}{next(iter(loose), '')}", "an unknown name", "no settings")
+        return {}
+    try:
+        hints = get_type_hints(target)
+        schema = dataclasses.make_dataclass(target.__name__, [(n, hints[n]) for n in names])
+        merged = OmegaConf.merge(OmegaConf.structured(schema), values)
+        for name in names:
+            require(not OmegaConf.is_missing(merged, name), prefix + name, "nothing", "a value")
+        fields = OmegaConf.to_container(merged, resolve=True)
+    except ConfigKeyError as error:
+        raise InputError(
+            f"{prefix}{error.key}", "an unknown name", f"one of {', '.join(names)}"
+        ) from error
+    except OmegaConfBaseException as error:
+        name = error.full_key or str(error.key or "")
+        raise InputError(prefix + name, _raw(values, name), _type_name(target, name)) from error
+    assert isinstance(fields, dict)
+    return {name: fields[name] for name in names}
+
+
+def _raw(values: object, name: str) -> object:
+    value = values.get(name.split(".")[0].split("[")[0]) if isinstance(values, dict) else values
+    if isinstance(value, DictConfig | ListConfig):
+        value = OmegaConf.to_container(value)
+    return repr(value)
+
+
+def _type_name(target: type[Any], name: str) -> str:
+    types = {f.name: f.type for f in dataclasses.fields(target)}
+    wanted = types.get(name.split(".")[0].split("[")[0], "another value")
+    text = wanted.__name__ if isinstance(wanted, type) else str(wanted)
+    return f"a value of type {text.replace('typing.', '')}"
