@@ -14,8 +14,9 @@ from typing import Any
 
 import numpy as np
 
+from gapath.driving import Outcome
 from gapath.errors import InputError, require
-from gapath.events import Event, RunFinished, RunStarted, TrialFinished
+from gapath.events import DriveFinished, Event, RunFinished, RunStarted, Stepped, TrialFinished
 from gapath.recorders import mcap
 
 _LOCAL = "127.0.0.1"  # a viewer also serves; never to other machines
@@ -92,19 +93,20 @@ def _info(arguments: argparse.Namespace) -> int:
         run, ended, finished = _summary(mcap.read_prefix(path))
         state = f"cut off or damaged ({error.value}); save the rest: gapath-log salvage {path}"
     problem, grid = run.problem, run.problem.map
-    statuses = ", ".join(f"{count} {status.name.lower()}" for status, count in finished.items())
+    ends = ", ".join(f"{count} {end}" for end, count in finished.items())
     rows = {
         "file": f"{path}, {path.stat().st_size} bytes",
         "state": state,
         "experiment": run.experiment,
-        "planner": run.planner,
+        "task": run.task,
+        "navigator" if run.task == "drive" else "planner": run.planner,
         "map": f"{grid.name}, instance {grid.instance}, {grid.cols} x {grid.rows} fields of "
         f"{grid.resolution:g} m ({grid.source})",
         "problem": f"{problem.start} to {problem.target}, "
         f"corner cutting: {problem.corner_cutting.name.lower()}",
-        "optimal cost": f"{run.optimal_cost:g}",
+        **_optimum(run),
         "seed": str(run.seed),
-        "trials": f"{finished.total()} of {run.trials}" + (f": {statuses}" if statuses else ""),
+        "trials": f"{finished.total()} of {run.trials}" + (f": {ends}" if ends else ""),
         "versions": ", ".join(f"{name} {version}" for name, version in run.versions.items()),
     }
     for name, value in rows.items():
@@ -118,13 +120,24 @@ def _info(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _summary(events: Iterator[Event]) -> tuple[RunStarted, bool, Counter[Any]]:
+def _optimum(run: RunStarted) -> dict[str, str]:
+    """Say what the trials are held against."""
+    if run.task == "plan":
+        return {"optimal cost": f"{run.optimal_cost:g}"}
+    steps = len(run.optimal_path) - 1
+    return {"shortest": f"{steps} steps possible" if steps >= 0 else "no way to the target"}
+
+
+def _summary(events: Iterator[Event]) -> tuple[RunStarted, bool, Counter[str]]:
+    """Give the first event, whether the run came to its end, and how its trials ended."""
     run, last = next(events), None
     assert isinstance(run, RunStarted), "the reader gives it first"
-    finished: Counter[Any] = Counter()
+    finished: Counter[str] = Counter()
     for last in events:
         if isinstance(last, TrialFinished):
-            finished[last.status] += 1
+            finished[last.status.name.lower()] += 1
+        elif isinstance(last, DriveFinished):
+            finished[Outcome(last.outcome).name.lower()] += 1
     return run, isinstance(last, RunFinished), finished
 
 
@@ -172,7 +185,7 @@ def difference(logged: Any, again: Any, where: str) -> str | None:
     Parameters
     ----------
     logged, again : event, or part of one
-        What is compared; NaN equals NaN.
+        What is compared; NaN equals NaN. Wall time is not in a log, so it is left out.
     where : str
         Name of the part.
 
@@ -185,6 +198,7 @@ def difference(logged: Any, again: Any, where: str) -> str | None:
         return f"{where}: {_short(logged)} in the log, {_short(again)} now"
     if dataclasses.is_dataclass(logged):
         names: Iterable[str] = (field.name for field in dataclasses.fields(logged))
+        names = (name for name in names if (type(logged), name) != (Stepped, "seconds"))
         return _first_difference(names, logged, again, where)
     if isinstance(logged, tuple) and hasattr(logged, "_fields"):
         return _first_difference(logged._fields, logged, again, where)

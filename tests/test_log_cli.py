@@ -10,7 +10,15 @@ import numpy as np
 import pytest
 
 from gapath import log_cli
-from gapath.events import Evolved, RunFinished, RunStarted, TrialFinished, TrialStarted
+from gapath.events import (
+    DriveFinished,
+    Evolved,
+    RunFinished,
+    RunStarted,
+    Stepped,
+    TrialFinished,
+    TrialStarted,
+)
 from gapath.grid import GridMap
 from gapath.problem import Evolution, PlanStatus, Problem
 from gapath.recorders import mcap
@@ -21,7 +29,7 @@ def run_events(trials=30):
     grid = GridMap("leer", np.full((4, 6), 0.5), resolution=0.1)
     path = np.array([[0, 0], [1, 1], [2, 1]], dtype=np.int32)
     yield RunStarted(
-        "table1", "ga3", Problem(grid, (0, 0), (2, 1)), 7, trials, "seed: 7\n",
+        "table1", "ga3", "plan", Problem(grid, (0, 0), (2, 1)), 7, trials, "seed: 7\n",
         {"gapath": "0.1.0"}, path, 1.5,
     )  # fmt: skip
     for trial in range(trials):
@@ -36,14 +44,42 @@ def run_events(trials=30):
     yield RunFinished(2 * trials, trials, 2 * trials // 3)
 
 
-@pytest.fixture
-def log(tmp_path):
+def drive_events(seconds=1e-4):
+    """Give the events of two drives on an empty map; the second one overruns."""
+    grid = GridMap("leer", np.full((4, 6), 0.5))
+    path = np.array([[0, 0], [1, 1]], dtype=np.int32)
+    settings = "task: drive\ndrive:\n  sensor: {range: 1}\n  unknown_weight: 0.5\n"
+    yield RunStarted(
+        "drives", "kg18", "drive", Problem(grid, (0, 0), (1, 1)), 7, 2, settings,
+        {"gapath": "0.1.0"}, path, 1.0,
+    )  # fmt: skip
+    fields, entries = path[1:], np.array([1 << 15], dtype=np.int32)
+    for trial in range(2):
+        step = 2 * trial
+        yield TrialStarted(step, trial, 7)
+        yield Stepped(step, trial, (0, 0), 1, 0, fields, entries, seconds)
+        yield Stepped(step + 1, trial, (1 - trial,) * 2, 1, 0, fields[:0], entries[:0], seconds)
+        yield DriveFinished(step + 1, trial, 2 * trial, 1)
+    yield RunFinished(4, 2, 1)
+
+
+def logged(events, folder):
     recorder = mcap.Recorder(flush_every=10)
-    recorder.open(str(tmp_path))
-    for event in run_events():
+    recorder.open(str(folder))
+    for event in events:
         recorder.record(event)
     recorder.close()
-    return tmp_path / "run.mcap"
+    return folder / "run.mcap"
+
+
+@pytest.fixture
+def log(tmp_path):
+    return logged(run_events(), tmp_path)
+
+
+@pytest.fixture
+def drive_log(tmp_path):
+    return logged(drive_events(), tmp_path)
 
 
 @pytest.fixture
@@ -80,6 +116,36 @@ def test_info_of_a_whole_log(log, capsys):
     assert "(0, 0) to (2, 1)" in lines["problem"]
     assert "  /ga_run       30" in out.splitlines()
     assert "  seed: 7" in out.splitlines()
+
+
+def test_info_of_drives(drive_log, capsys):
+    _, out, _ = call(capsys, "info", drive_log)
+    lines = {line.split(":")[0]: line for line in out.splitlines()}
+    assert lines["trials"].endswith("2 of 2: 1 reached, 1 overran")
+    assert lines["navigator"].endswith(" kg18")
+    assert lines["shortest"].endswith(" 1 steps possible")
+    assert "  /drive_step   4" in out.splitlines()
+
+
+def test_verify_of_drives_does_not_compare_wall_time(drive_log, replay, capsys):
+    replay.replay_events = lambda run: list(drive_events(seconds=5.0))[1:]
+    assert call(capsys, "verify", drive_log)[0] == 0
+
+    def elsewhere():
+        for event in list(drive_events())[1:]:
+            if isinstance(event, Stepped) and event.step == 3:
+                event = dataclasses.replace(event, place=(0, 1))
+            yield event
+
+    replay.replay_events = lambda run: elsewhere()
+    code, out, _ = call(capsys, "verify", drive_log)
+    assert code == 1
+    assert "trial 1, step 3, Stepped.place: (0, 0) in the log, (0, 1) now" in out
+
+
+def test_rerun_of_drives(drive_log, capsys):
+    code, out, _ = call(capsys, "rerun", drive_log, "--trials", "1")
+    assert (code, out) == (0, f"{drive_log.with_name('trial-1.rrd')}\n")
 
 
 def test_info_of_a_log_that_was_cut_off(cut, capsys):

@@ -16,7 +16,7 @@ from gapath.events import RunStarted
 from gapath.grid import Field, GridMap
 from gapath.problem import CornerCutting, Problem
 
-LOG_VERSION = "1"
+LOG_VERSION = "2"
 """Raised whenever an older reader would misread a log."""
 
 NAME = "gapath"
@@ -46,6 +46,7 @@ def metadata(run: RunStarted) -> dict[str, str]:
         "gapath_log_version": LOG_VERSION,
         "experiment": run.experiment,
         "planner": run.planner,
+        "task": run.task,
         "seed": str(run.seed),
         "trials": str(run.trials),
         "start": _numbers(problem.start),
@@ -113,6 +114,7 @@ def run_started(text: Mapping[str, str], files: Mapping[str, bytes]) -> RunStart
     return RunStarted(
         experiment=text["experiment"],
         planner=text["planner"],
+        task=text["task"],
         problem=Problem(
             grid,
             _field(text["start"]),

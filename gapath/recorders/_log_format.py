@@ -55,26 +55,92 @@ uint8 status
 bool feasible             # status is FOUND
 int32[] path              # x, y, x, y, ... [fields]; empty without a path
 """,
+    "gapath_msgs/msg/DriveStep": """\
+# A robot looked around and moved, or stood (the first look of a drive: stood).
+uint8 EXPLORE=0
+uint8 REPLAN=1
+uint8 RETURN=2
+uint64 trial
+int32 x                   # the robot's field after the step
+int32 y
+uint8 heading             # where it looked: 0 (+x) to 7, clockwise with y down
+uint8 mode
+int32[] fields            # seen for the first time or changed: x, y, x, y, ... [fields]
+int32[] entries           # their weights in units of 1 / 65536; 16777216: an obstacle
+""",
+    "gapath_msgs/msg/PlannerCall": """\
+# A navigator called a planner in this step, before the robot moved.
+uint8 FOUND=0
+uint8 NOT_FOUND=1
+uint8 INFEASIBLE=2
+uint64 trial
+uint64 epochs
+uint64 evaluations        # chromosomes whose fitness was computed
+uint64 expansions         # fields that a graph search expanded
+float64 cost              # sum of the weights of the path's fields on the known map
+uint32 index              # number of the planner in its part's list
+uint8 status
+bool adopted              # its path became the current one
+int32[] path              # x, y, x, y, ... [fields]
+string part               # A (return), B (explore) or C (replan)
+""",
+    "gapath_msgs/msg/Paths": """\
+# The path that the robot follows, or the way back, is another one from this step on.
+uint64 trial
+int32[] path              # from the robot's field on: x, y, x, y, ... [fields]; empty: none
+int32[] past              # the way back, the robot's own field last
+""",
+    "gapath_msgs/msg/DriveEnd": """\
+# A drive ended.
+uint8 REACHED=0
+uint8 RETURNED=1
+uint8 OVERRAN=2
+uint64 trial
+uint64 steps
+uint8 outcome
+""",
     "gapath_msgs/msg/RunEnd": """\
 # The run was not interrupted.
 uint64 trials
-uint64 found              # trials that found a path
+uint64 found              # trials that found a path, or reached the target
 """,
 }
 
-TOPICS = {
+OUTCOMES = ("reached", "returned", "overran")
+"""Names of the outcomes of DriveEnd; `gapath.driving`, which ends drives, lies above."""
+
+_OF_BOTH = {
     "/map": "nav_msgs/msg/OccupancyGrid",
     "/start": "geometry_msgs/msg/PoseStamped",
     "/target": "geometry_msgs/msg/PoseStamped",
     "/optimal_path": "nav_msgs/msg/Path",
-    "/path": "nav_msgs/msg/Path",
     "/log": "rcl_interfaces/msg/Log",
     "/trial_start": "gapath_msgs/msg/TrialStart",
-    "/ga_run": "gapath_msgs/msg/GaRun",
-    "/result": "gapath_msgs/msg/Result",
     "/run_end": "gapath_msgs/msg/RunEnd",
 }
-"""Message type of every topic, in the order of the log's channels."""
+TOPICS_OF = {
+    "plan": _OF_BOTH
+    | {
+        "/path": "nav_msgs/msg/Path",
+        "/ga_run": "gapath_msgs/msg/GaRun",
+        "/result": "gapath_msgs/msg/Result",
+    },
+    "drive": _OF_BOTH
+    | {
+        "/known_map": "nav_msgs/msg/OccupancyGrid",
+        "/pose": "geometry_msgs/msg/PoseStamped",
+        "/current_path": "nav_msgs/msg/Path",
+        "/past_path": "nav_msgs/msg/Path",
+        "/drive_step": "gapath_msgs/msg/DriveStep",
+        "/planner_call": "gapath_msgs/msg/PlannerCall",
+        "/paths": "gapath_msgs/msg/Paths",
+        "/drive_end": "gapath_msgs/msg/DriveEnd",
+    },
+}
+"""Message type of every topic of a task, in the order of the log's channels."""
+
+TOPICS = TOPICS_OF["plan"] | TOPICS_OF["drive"]
+"""Message type of every topic."""
 
 TYPES = get_typestore(Stores.ROS2_HUMBLE)
 for _name, _text in _OWN.items():

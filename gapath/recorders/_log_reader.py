@@ -21,8 +21,9 @@ from mcap.stream_reader import StreamReader
 from gapath.errors import InputError, require
 from gapath.events import Event, RunStarted
 from gapath.recorders import _log_description
+from gapath.recorders._cdr import Record
 from gapath.recorders._log_format import LIBRARY, MAX_CHUNK, MAX_LOG, NS_PER_STEP, PROFILE
-from gapath.recorders._messages import Record, event
+from gapath.recorders._messages import event
 
 _WHOLE = "a whole log of gapath (what a killed run left: gapath-log salvage)"
 _BEGUN = "a log of gapath that is whole at least up to the first message"

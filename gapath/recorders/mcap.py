@@ -22,11 +22,11 @@ from gapath.recorders._log_format import (
     MAX_LOG,
     NS_PER_STEP,
     PROFILE,
-    TOPICS,
+    TOPICS_OF,
     schema,
 )
 from gapath.recorders._log_reader import count_messages, read_events, read_prefix
-from gapath.recorders._messages import records
+from gapath.recorders._messages import Messages
 
 __all__ = ["FILE", "Recorder", "count_messages", "read_events", "read_prefix", "salvage"]
 
@@ -57,12 +57,15 @@ class Recorder:
     _file: IO[bytes] | None = field(init=False, repr=False, default=None)
     _writer: Any = field(init=False, repr=False)
     _channels: dict[str, int] = field(init=False, repr=False)
-    _run: RunStarted = field(init=False, repr=False)
+    _messages: Messages = field(init=False, repr=False)
     _count: int = field(init=False, repr=False)
     _bytes: int = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         require(self.flush_every >= 1, "recorder.mcap.flush_every", self.flush_every, "at least 1")
+
+    def check(self, trials: int) -> None:
+        """Accept every run; its size is bounded while it is written."""
 
     def open(self, folder: str) -> None:
         """Start ``run.mcap.part`` in an existing folder."""
@@ -71,13 +74,6 @@ class Recorder:
         self._count = self._bytes = 0
         self._writer = Writer(self._file, enable_data_crcs=True)
         self._writer.start(profile=PROFILE, library=LIBRARY)
-        schemas: dict[str, int] = {}
-        self._channels = {}
-        for topic, name in TOPICS.items():
-            if name not in schemas:
-                text = schema(topic)
-                schemas[name] = self._writer.register_schema(name, "ros2msg", text)
-            self._channels[topic] = self._writer.register_channel(topic, "cdr", schemas[name])
 
     @property
     def _part(self) -> Path:
@@ -94,11 +90,8 @@ class Recorder:
             If the file cannot be written.
         """
         if isinstance(event, RunStarted):
-            self._run = event
-            self._writer.add_metadata(_log_description.NAME, _log_description.metadata(event))
-            for name, data in _log_description.attachments(event).items():
-                self._writer.add_attachment(0, 0, name, "application/octet-stream", data)
-        for topic, step, data in records(event, self._run):
+            self._begin(event)
+        for topic, step, data in self._messages.records(event):
             self._bytes += len(data) + _MESSAGE_HEAD
             if len(data) > MAX_CHUNK // 2 or self._bytes > MAX_LOG // 2:
                 raise InputError(
@@ -111,6 +104,19 @@ class Recorder:
             self._count += 1
             if self._count % self.flush_every == 0:
                 self._writer.flush()
+
+    def _begin(self, run: RunStarted) -> None:
+        self._messages = Messages(run)
+        self._writer.add_metadata(_log_description.NAME, _log_description.metadata(run))
+        for name, data in _log_description.attachments(run).items():
+            self._writer.add_attachment(0, 0, name, "application/octet-stream", data)
+        schemas: dict[str, int] = {}
+        self._channels = {}
+        for topic, name in TOPICS_OF[run.task].items():
+            if name not in schemas:
+                text = schema(topic)
+                schemas[name] = self._writer.register_schema(name, "ros2msg", text)
+            self._channels[topic] = self._writer.register_channel(topic, "cdr", schemas[name])
 
     def close(self) -> list[str]:
         """Finish the log, make it durable, and give it its name."""

@@ -1,9 +1,9 @@
 """Rerun recordings: one ``trial-<n>.rrd`` for each chosen trial.
 
-What a recording shows is made in `gapath.recorders._scene`, which alone imports Rerun:
-that takes up to a second, so it waits until a chosen trial has ended. The recording is
-made in memory and written here, because Rerun's own file writer loses data on a full disk
-without an error.
+What a recording shows is made in `gapath.recorders._scene` for plans and in
+`gapath.recorders._drive_scene` for drives. They import Rerun, which takes up to a second,
+so that waits until a chosen trial has ended. The recording is made in memory and written
+here, because Rerun's own file writer loses data on a full disk without an error.
 """
 
 from dataclasses import dataclass, field
@@ -11,7 +11,7 @@ from pathlib import Path
 
 from gapath.durable import part_of, publish, write_part
 from gapath.errors import require
-from gapath.events import Event, Evolved, RunStarted, TrialFinished, TrialStarted
+from gapath.events import DriveFinished, Event, RunStarted, TrialFinished, TrialStarted
 
 
 @dataclass
@@ -33,8 +33,7 @@ class Recorder:
     trials: list[int]
     _folder: Path = field(init=False, repr=False)
     _run: RunStarted = field(init=False, repr=False)
-    _trial: TrialStarted | None = field(init=False, repr=False, default=None)
-    _evolutions: list[Evolved] = field(init=False, repr=False, default_factory=list)
+    _events: list[Event] = field(init=False, repr=False, default_factory=list)
     _names: list[str] = field(init=False, repr=False, default_factory=list)
 
     def __post_init__(self) -> None:
@@ -43,11 +42,19 @@ class Recorder:
         )
         require(good, "recorder.rerun.trials", self.trials, "a list of trial numbers from 0 on")
 
+    def check(self, trials: int) -> None:
+        """Raise InputError if a chosen trial is not one of a run's."""
+        require(
+            all(trial < trials for trial in self.trials),
+            "recorder.rerun.trials",
+            self.trials,
+            f"trials of this run, 0 to {trials - 1}",
+        )
+
     def open(self, folder: str) -> None:
         """Prepare to write files into an existing folder."""
         self._folder = Path(folder)
-        self._trial = None
-        self._evolutions = []
+        self._events = []
         self._names = []
 
     def record(self, event: Event) -> None:
@@ -67,28 +74,22 @@ class Recorder:
         """
         match event:
             case RunStarted():
-                require(
-                    all(trial < event.trials for trial in self.trials),
-                    "recorder.rerun.trials",
-                    self.trials,
-                    f"trials of this run, 0 to {event.trials - 1}",
-                )
+                self.check(event.trials)
                 self._run = event
             case TrialStarted() if event.trial in self.trials:
-                self._trial = event
-            case Evolved() if self._trial is not None:
-                self._evolutions.append(event)
-            case TrialFinished() if self._trial is not None:
-                self._write(self._trial, event)
-                self._trial = None
-                self._evolutions = []
+                self._events = [event]
+            case TrialFinished() | DriveFinished() if self._events:
+                self._write(event.trial, [*self._events, event])
+                self._events = []
+            case _ if self._events:
+                self._events.append(event)
 
-    def _write(self, trial: TrialStarted, finished: TrialFinished) -> None:
-        from gapath.recorders._scene import recording
+    def _write(self, trial: int, events: list[Event]) -> None:
+        from gapath.recorders import _drive_scene, _scene
 
-        content = recording(self._run, trial, self._evolutions, finished)
-        name = f"trial-{trial.trial}.rrd"
-        write_part(self._folder / name, content)
+        scene = _scene if isinstance(events[-1], TrialFinished) else _drive_scene
+        name = f"trial-{trial}.rrd"
+        write_part(self._folder / name, scene.recording(self._run, events))
         self._names.append(name)
 
     def close(self) -> list[str]:
@@ -99,5 +100,4 @@ class Recorder:
 
     def abort(self) -> None:
         """Forget the trial under way; files already written stay as ``.part``."""
-        self._trial = None
-        self._evolutions = []
+        self._events = []

@@ -7,9 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
+from gapath.drive_task import drive_events
+from gapath.driving import Drive, Frame, Outcome
 from gapath.events import Evolved, RunFinished, RunStarted, TrialFinished, TrialStarted
 from gapath.grid import GridMap
-from gapath.problem import Evolution, PlanStatus, Problem
+from gapath.navigation import Call, Decision, Mode
+from gapath.problem import Evolution, Plan, PlanStatus, Problem
 from gapath.recorders import mcap
 
 
@@ -36,7 +39,7 @@ def example(trials=6, epochs=8):
     grid = GridMap("Übung 3", weights, (0, 0), (8, 6), origin=(1.0, -2.0, 0.5), resolution=0.05)
     path = np.array([[0, 0], [1, 1], [1, 2]], dtype=np.int32)
     run = RunStarted(
-        "table1", "ga3", Problem(grid, (0, 0), (8, 6)), 7, trials, "planner:\n  kind: ga\n",
+        "table1", "ga3", "plan", Problem(grid, (0, 0), (8, 6)), 7, trials, "planner:\n  kind: ga\n",
         {"gapath": "0.1.0", "numpy": "2.4.6"}, path, 2.5,
     )  # fmt: skip
     events, step = [run], 0
@@ -57,6 +60,72 @@ def example(trials=6, epochs=8):
         events.append(TrialFinished(step, trial, status, 1.5, epochs, 40 * epochs, 0, walked))
     events.append(RunFinished(step, trials, sum(trial % 3 > 0 for trial in range(trials))))
     return events
+
+
+def example_drives(trials=2):
+    """Give the events of drives that find no way, go back, and then reach the target.
+
+    The map is 9 x 7 and its row 3 blocked but for both ends; the robot goes from (0, 0)
+    to (8, 6) with a sensor of range 1.
+    """
+    run = dataclasses.replace(
+        example(trials)[0], experiment="drives", planner="kg18", task="drive", settings=SETTINGS
+    )
+    events, step = [run], 0
+    for trial in range(trials):
+        driven = _drive(run.problem.map, trial)
+        events += drive_events(driven, run.problem.map.cols, 7, trial, step)
+        step += len(driven.frames)
+    events.append(RunFinished(step, trials, 1))
+    return events
+
+
+SETTINGS = """\
+task: drive
+drive:
+  sensor: {range: 1, occlusion: false}
+  unknown_weight: 0.5
+"""
+
+
+def _drive(grid, trial):
+    """Drive by hand: three steps towards (3, 2), back to (1, 1), then to (8, 6)."""
+    first = np.array([[0, 0], [1, 1], [2, 2], [3, 3], [4, 4]], dtype=np.int32)
+    second = np.array([[1, 1], [1, 2], [0, 3], [1, 4], [2, 5], [3, 6], [4, 6]], dtype=np.int32)
+    found = Plan(PlanStatus.FOUND, first, 2.0, epochs=3, evaluations=40)
+    failed = Plan(PlanStatus.NOT_FOUND, first[:0], 3e5, epochs=9, evaluations=90)
+    better = Plan(PlanStatus.FOUND, second, 3.5, epochs=2, evaluations=30)
+    explore, replan, back = Mode.EXPLORE, Mode.REPLAN, Mode.RETURN
+    trail = [tuple(place) for place in first[:3].tolist()]
+    way = second.tolist()
+    decisions = [
+        ((1, 1), replan, [Call("C", 0, found, True)], first, trail[:1]),
+        ((2, 2), explore, [Call("B", 0, failed, False)], first[1:], trail[:2]),
+        ((2, 2), explore, [], first[2:], trail),
+        ((1, 1), back, [Call("C", i, failed, False) for i in (0, 1)], None, trail),
+        ((1, 2), explore, [Call("A", 0, better, True)], second, trail[:2]),
+        *((tuple(way[i + 1]), explore, [], second[i:], [*trail[:2], *map(tuple, way[1 : i + 1])])
+          for i in range(1, 3 + 3 * (trial == 0))),
+    ]  # fmt: skip
+    place, seen, frames = (0, 0), set(), []
+    for heading, decision in enumerate([None, *decisions]):
+        if decision is not None:
+            target, mode, calls, path, past = decision
+            decision = Decision(target, mode, None, None, tuple(calls), path, tuple(past))
+            place = target
+        x, y = place
+        near = {v * 9 + u for u in range(x - 1, x + 2) for v in range(y - 1, y + 2)
+                if 0 <= u < 9 and 0 <= v < 7}  # fmt: skip
+        news = np.array(sorted(near - seen), dtype=np.int64)
+        seen |= near
+        entries = grid.table.ravel()[news]
+        frames.append(Frame(place, heading % 8, decision, news, entries, 1e-5 * (heading + 1)))
+    return Drive(Outcome.REACHED if trial == 0 else Outcome.OVERRAN, frames, 1e-3)
+
+
+def logged(event):
+    """Give an event as the log has it: without its wall time."""
+    return dataclasses.replace(event, seconds=math.nan) if hasattr(event, "seconds") else event
 
 
 def write(events, folder, flush_every=100):

@@ -5,30 +5,38 @@ import math
 import subprocess
 import sys
 import tempfile
+import time
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from log_events import example, plain, write
+from log_events import example, example_drives, logged, plain, write
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
+from gapath.driving import Outcome
 from gapath.errors import InputError
 from gapath.events import (
+    Called,
+    DriveFinished,
     Evolved,
+    PathsChanged,
     Recorder,
     RunFinished,
     RunStarted,
+    Stepped,
     TrialFinished,
     TrialStarted,
 )
 from gapath.grid import GridMap
+from gapath.navigation import Mode
 from gapath.problem import CornerCutting, Evolution, PlanStatus, Problem
-from gapath.recorders import _log_format, _messages, mcap, none
+from gapath.recorders import _cdr, _log_format, _messages, mcap, none
 
 TYPES = _log_format.TYPES
+OWN = "gapath_msgs/msg/"
 counts = st.integers(0, 2**63)
 int32 = st.integers(-(2**31), 2**31 - 1)
 
@@ -70,16 +78,36 @@ def evolutions(draw):
     )
 
 
+def drives(draw, grid, step, trial):
+    """Give the events of a drive between its start and its end."""
+    places = st.tuples(st.integers(0, grid.cols - 1), st.integers(0, grid.rows - 1))
+    part, heading = st.sampled_from("ABC"), st.integers(0, 7)
+    for i in range(draw(st.integers(0, 3))):
+        now = step + i
+        if draw(st.booleans()):
+            status, adopted = draw(st.sampled_from(PlanStatus)), draw(st.booleans())
+            numbers = draw(st.floats()), draw(counts), 2, 3
+            yield Called(now, trial, draw(part), i, adopted, status, *numbers, draw(paths()))
+        if draw(st.booleans()):
+            yield PathsChanged(now, trial, draw(paths()), draw(paths()))
+        seen = np.array(draw(st.lists(places, max_size=4)), dtype=np.int32).reshape(-1, 2)
+        entries = draw(arrays(np.int32, len(seen), elements=st.integers(0, 1 << 24)))
+        mode, seconds = draw(st.integers(0, 2)), draw(st.floats())
+        yield Stepped(now, trial, draw(places), draw(heading), mode, seen, entries, seconds)
+
+
 @st.composite
 def runs(draw):
     """Give the events of a run that need not make sense as one."""
     grid = draw(grid_maps())
     target = (grid.cols - 1, grid.rows - 1)
     problem = Problem(grid, (0, 0), target, draw(st.sampled_from(CornerCutting)))
+    task = draw(st.sampled_from(["plan", "drive"]))
     events = [
         RunStarted(
             draw(st.text()),
             draw(st.text()),
+            task,
             problem,
             draw(counts),
             draw(counts),
@@ -93,6 +121,10 @@ def runs(draw):
     for _ in range(draw(st.integers(0, 3))):
         step, trial = draw(steps), draw(counts)
         events.append(TrialStarted(step, trial, draw(counts)))
+        if task == "drive":
+            events += drives(draw, grid, step, trial)
+            events.append(DriveFinished(step, trial, draw(st.integers(0, 2)), draw(counts)))
+            continue
         for call in range(draw(st.integers(0, 2))):
             events.append(Evolved(step, trial, call, draw(evolutions())))
         status, cost, numbers = draw(st.sampled_from(PlanStatus)), draw(st.floats()), draw(counts)
@@ -112,15 +144,17 @@ def log(tmp_path_factory):
 def test_events_come_back(events, flush_every):
     with tempfile.TemporaryDirectory() as folder:
         path = write(events, folder, flush_every)
-        assert list(map(plain, mcap.read_events(path))) == list(map(plain, events))
-        assert list(map(plain, mcap.read_prefix(path))) == list(map(plain, events))
+        expected = [plain(logged(event)) for event in events]
+        assert list(map(plain, mcap.read_events(path))) == expected
+        assert list(map(plain, mcap.read_prefix(path))) == expected
 
 
 @settings(max_examples=60, deadline=None)
 @given(runs())
 def test_every_message_is_what_rosbags_would_write(events):
+    messages = _messages.Messages(events[0])
     for event in events:
-        for topic, _, data in _messages.records(event, events[0]):
+        for topic, _, data in messages.records(event):
             name = _log_format.TOPICS[topic]
             message = TYPES.deserialize_cdr(data, name)
             assert bytes(TYPES.serialize_cdr(message, name, little_endian=True)) == data
@@ -128,7 +162,7 @@ def test_every_message_is_what_rosbags_would_write(events):
 
 @given(
     st.integers(0, 10**12),
-    arrays(np.float64, st.tuples(st.integers(1, 9), st.just(2)), elements=st.floats()),
+    arrays(np.float64, st.tuples(st.integers(0, 9), st.just(2)), elements=st.floats()),
 )
 def test_path_equals_one_built_pose_by_pose(step, metres):
     make = {name.split("/")[-1]: cls for name, cls in TYPES.types.items()}
@@ -140,11 +174,13 @@ def test_path_equals_one_built_pose_by_pose(step, metres):
     ]
     name = "nav_msgs/msg/Path"
     slow = TYPES.serialize_cdr(TYPES.types[name](header, poses), name, little_endian=True)
-    assert _messages.path_cdr(step, metres) == bytes(slow)
+    assert _cdr.path_cdr(step, metres) == bytes(slow)
 
 
-def test_same_events_same_bytes(log, tmp_path):
-    assert write(example(), tmp_path, flush_every=5).read_bytes() == log.read_bytes()
+@pytest.mark.parametrize("events", [example, example_drives])
+def test_same_events_same_bytes(events, tmp_path):
+    first = write(events(), tmp_path, flush_every=5).read_bytes()
+    assert write(events(), tmp_path, flush_every=5).read_bytes() == first
 
 
 def test_a_foreign_reader_understands_it(log):
@@ -198,7 +234,8 @@ def test_a_field_that_can_be_passed_never_shows_as_an_obstacle(tmp_path):
     run = example()[0]
     grid = GridMap("almost", np.array([[0.0, 0.999, 1.0, 0.0]]))
     problem = Problem(grid, (0, 0), (3, 0))
-    data = next(_messages.records(dataclasses.replace(run, problem=problem), run)).data
+    run = dataclasses.replace(run, problem=problem)
+    data = next(_messages.Messages(run).records(run)).data
     assert TYPES.deserialize_cdr(data, "nav_msgs/msg/OccupancyGrid").data.tolist() == [
         0,
         99,
@@ -207,14 +244,110 @@ def test_a_field_that_can_be_passed_never_shows_as_an_obstacle(tmp_path):
     ]
 
 
-def test_rerun_accepts_it(log):
+def decoded(path):
+    found = {}
+    with path.open("rb") as file:
+        reader = make_reader(file, validate_crcs=True, decoder_factories=[DecoderFactory()])
+        for _, channel, message, value in reader.iter_decoded_messages(log_time_order=False):
+            found.setdefault(channel.topic, []).append((message.log_time // 1_000_000, value))
+    return found
+
+
+def test_a_foreign_reader_understands_drives(tmp_path):
+    events = example_drives()
+    grid, found = events[0].problem.map, decoded(write(events, tmp_path))
+    steps = [event for event in events if isinstance(event, Stepped)]
+    true = np.minimum(np.rint(100 * grid.weights), 99) + grid.obstacles * (100 - 99)
+
+    def shown_at(step):
+        """The known map as it should be: only what this drive has seen until now."""
+        began = max(e.step for e in events if isinstance(e, TrialStarted) and e.step <= step)
+        known = np.full(true.shape, -1)
+        known[0, 0], known[6, 8] = true[0, 0], true[6, 8]
+        for event in steps:
+            if began <= event.step <= step:
+                x, y = event.fields.T
+                known[y, x] = true[y, x]
+        return known
+
+    with_news = [event.step for event in steps if len(event.fields)]
+    assert [step for step, _ in found["/known_map"]] == with_news
+    for step, shown in found["/known_map"]:
+        data = np.array(shown.data).reshape(shown.info.height, shown.info.width)
+        assert data[::-1].tolist() == shown_at(step).tolist()
+        stamp = shown.header.stamp
+        assert stamp.sec * 10**9 + stamp.nanosec == step * 1_000_000
+
+    assert [step for step, _ in found["/pose"]] == [event.step for event in steps]
+    for event, (_, shown) in zip(steps, found["/pose"], strict=True):
+        position, turn = shown.pose.position, shown.pose.orientation
+        assert (position.x, position.y) == tuple(grid.to_metres(np.array([event.place]))[0])
+        yaw = 2 * math.atan2(turn.z, turn.w) - grid.origin[2]
+        seen = math.cos(yaw), -math.sin(yaw)  # y down, as headings have it
+        assert seen == pytest.approx(
+            (math.cos(event.heading * math.pi / 4), math.sin(event.heading * math.pi / 4))
+        )
+
+    changes = [event for event in events if isinstance(event, PathsChanged)]
+    assert any(not len(event.path) for event in changes)  # no current path: an empty message
+    for topic, name in (("/current_path", "path"), ("/past_path", "past")):
+        for event, (_, shown) in zip(changes, found[topic], strict=True):
+            metres = grid.to_metres(getattr(event, name)).tolist()
+            assert [[p.pose.position.x, p.pose.position.y] for p in shown.poses] == metres
+    calls = [event for event in events if isinstance(event, Called)]
+    for event, (_, call) in zip(calls, found["/planner_call"], strict=True):
+        assert (call.part, call.index, call.adopted) == (event.part, event.index, event.adopted)
+    assert [(end.outcome, end.steps) for _, end in found["/drive_end"]] == [(0, 10), (2, 7)]
+    texts = [(line.level, line.msg) for _, line in found["/log"]]
+    assert texts[1] == (20, "trial 0: going back, no path was found")
+    assert texts[2] == (20, "trial 0: reached after 10 steps")
+    assert texts[4] == (30, "trial 1: overran after 7 steps")
+    assert texts[5][1] == "run finished: 1 of 2 trials reached the target"
+    assert "/ga_run" not in found
+
+
+def test_outcomes_are_named_as_they_are_defined():
+    assert {o.value: o.name.lower() for o in Outcome} == dict(enumerate(_log_format.OUTCOMES))
+    for name, kind in (("DriveEnd", Outcome), ("DriveStep", Mode), ("PlannerCall", PlanStatus)):
+        text = _log_format.schema({v: k for k, v in _log_format.TOPICS.items()}[OWN + name])
+        for member in kind:
+            assert f"uint8 {member.name}={member.value}\n" in text.decode()
+
+
+def test_large_known_maps_are_shown_less_often(tmp_path):
+    grid = GridMap("large", np.full((256, 256), 0.5))
+    run = dataclasses.replace(example_drives()[0], problem=Problem(grid, (0, 0), (255, 255)))
+    events = [run, TrialStarted(0, 0, 7)]
+    for step in range(10):
+        fields = np.array([[step, 1]], dtype=np.int32)
+        entries = np.array([1 << 15], dtype=np.int32)
+        events.append(Stepped(step, 0, (0, 0), 0, 0, fields, entries, 0.0))
+    events.append(DriveFinished(9, 0, 2, 9))
+    shown = decoded(write(events, tmp_path))["/known_map"]
+    assert [step for step, _ in shown] == [0, 4, 8, 9]
+    assert [np.count_nonzero(np.array(known.data) == 50) for _, known in shown] == [3, 7, 11, 12]
+
+
+def test_a_step_costs_little(tmp_path):
+    events = example_drives(trials=200)
+    steps = sum(isinstance(event, Stepped) for event in events)
+    took = []
+    for _ in range(3):
+        began = time.perf_counter()
+        write(events, tmp_path)
+        took.append(time.perf_counter() - began)
+    assert min(took) / steps < 300e-6  # five times what a quiet machine takes, starts included
+
+
+@pytest.mark.parametrize(("task", "events"), [("plan", example), ("drive", example_drives)])
+def test_rerun_accepts_it(task, events, tmp_path):
     checked = subprocess.run(
-        [sys.executable, "-m", "rerun_cli", "mcap", "check", "--full", log],
+        [sys.executable, "-m", "rerun_cli", "mcap", "check", "--full", write(events(), tmp_path)],
         capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert checked.returncode == 0, checked.stderr
     rows = [line for line in checked.stdout.splitlines() if "/" in line and "run.mcap" not in line]
-    assert len(rows) == len(_log_format.TOPICS)
+    assert len(rows) == len(_log_format.TOPICS_OF[task])
     assert all(row.startswith("ok") for row in rows)
 
 

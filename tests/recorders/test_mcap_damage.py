@@ -7,7 +7,7 @@ import zlib
 import numpy as np
 import pytest
 import zstandard
-from log_events import example, plain, write
+from log_events import example, example_drives, logged, plain, write
 from mcap.reader import make_reader
 from mcap.records import Chunk
 from mcap.writer import CompressionType, Writer
@@ -36,6 +36,22 @@ def test_a_log_cut_anywhere_gives_a_prefix(log, tmp_path):
         assert prefix == events[: len(prefix)]
         seen.add(len(prefix))
     assert {0, len(events)} < seen
+
+
+def test_a_log_of_drives_cut_anywhere_is_salvaged(tmp_path):
+    whole = write(example_drives(), tmp_path, flush_every=5).read_bytes()
+    events = [plain(logged(event)) for event in example_drives()]
+    cut, output, seen = tmp_path / "cut.mcap.part", tmp_path / "out.mcap", set()
+    for length in np.random.default_rng(3).integers(0, len(whole), 40).tolist():
+        cut.write_bytes(whole[:length])
+        try:
+            count = mcap.salvage(cut, output)
+        except InputError:
+            continue
+        assert list(map(plain, mcap.read_events(output))) == events[:count]
+        output.unlink()
+        seen.add(count)
+    assert len(seen) > 5
 
 
 def test_a_flipped_bit_never_changes_an_event_silently(log, tmp_path):
@@ -143,10 +159,10 @@ BAD = {
     "no metadata": (lambda path, log: foreign(path), "a run's description"),
     "version": (
         lambda path, log: foreign(path, metadata={"gapath_log_version": "99"}),
-        "gapath_log_version: got 99, expected 1",
+        "gapath_log_version: got 99, expected 2",
     ),
     "entries missing": (
-        lambda path, log: foreign(path, metadata={"gapath_log_version": "1"}),
+        lambda path, log: foreign(path, metadata={"gapath_log_version": "2"}),
         "KeyError",
     ),
 }

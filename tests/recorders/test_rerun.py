@@ -2,7 +2,6 @@
 
 import dataclasses
 import math
-import os
 import subprocess
 import sys
 import time
@@ -15,7 +14,7 @@ import rerun as rr
 import yaml
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from rerun.chunk import RrdReader
+from recordings import centres, read, record, rerun_command
 
 import gapath
 from gapath.errors import InputError
@@ -25,7 +24,6 @@ from gapath.problem import Evolution, PlanStatus, Problem
 from gapath.recorders.rerun import Recorder
 
 CONF = Path(gapath.__file__).parent.parent / "conf" / "recorder" / "rerun.yaml"
-QUIET = {**os.environ, "CI": "1"}  # Rerun's command sends no usage data where CI is set
 
 
 @pytest.fixture(autouse=True)
@@ -57,6 +55,7 @@ def run_of(evolutions, trials=1, status=PlanStatus.FOUND, source="reconstructed"
     run = RunStarted(
         experiment="table1",
         planner="ga3",
+        task="plan",
         problem=Problem(grid, (0, 2), (39, 2)),
         seed=7,
         trials=trials,
@@ -79,34 +78,8 @@ def run_of(evolutions, trials=1, status=PlanStatus.FOUND, source="reconstructed"
     yield RunFinished(step, trials, trials if status is PlanStatus.FOUND else 0)
 
 
-def record(folder, events, trials=(0,)):
-    recorder = Recorder(trials=list(trials))
-    recorder.open(str(folder))
-    for event in events:
-        recorder.record(event)
-    return recorder.close()
-
-
 def files(folder):
     return sorted(path.name for path in folder.iterdir())
-
-
-def read(path):
-    """Read a recording back: {(entity, component): value, or [(epoch, value), ...]}."""
-    found = {}
-    for chunk in RrdReader(str(path)).stream():
-        batch = chunk.to_record_batch()
-        assert set(batch.schema.names) & {"log_time", "log_tick"} == set()
-        columns = batch.to_pydict()
-        epochs = columns.pop("epoch", None)
-        for name, values in columns.items():
-            if name != "rerun.controls.RowId":
-                key = (chunk.entity_path, name)
-                if epochs is None:
-                    found[key] = values[0]
-                else:
-                    found.setdefault(key, []).extend(zip(epochs, values, strict=True))
-    return found
 
 
 def line_by_definition(way_points):
@@ -122,10 +95,6 @@ def line_by_definition(way_points):
                 )
             )
     return fields
-
-
-def centres(fields):
-    return [[x + 0.5, y + 0.5] for x, y in fields]
 
 
 @settings(max_examples=15, deadline=None, suppress_health_check=list(HealthCheck))
@@ -221,13 +190,6 @@ def test_fitness_without_logarithm_leaves_a_gap(tmp_path):
     record(tmp_path, run_of([flat]))
     values = [v[0] for _, v in read(tmp_path / "trial-0.rrd")["/fitness/best", "Scalars:scalars"]]
     assert values[0] == 1 and not np.isfinite(values[1:]).any()
-
-
-def rerun_command(*arguments):
-    # `python -m rerun_cli` drops the exit code.
-    code = "import sys; from rerun_cli.__main__ import main; sys.exit(main())"
-    command = [sys.executable, "-c", code, *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, env=QUIET, timeout=60)
 
 
 def test_the_files_are_verified_and_equal_for_equal_events(tmp_path):
