@@ -10,8 +10,8 @@ from gapath.errors import InputError
 _EPILOG = """\
 commands:
   gapath-report OUTPUTS [-o DIR]   write the report
-  gapath-report runs [OUTPUTS]     list the run folders: key, experiment, map, planner,
-                                   trials, state, date and size
+  gapath-report runs [OUTPUTS]     list the run folders: key, experiment, map, planner
+                                   or navigator, trials, state, date and size
 
 Runs that cannot be used are named, with the reason, and left out. A folder that is itself
 called "runs" is given as ./runs.

@@ -1,25 +1,32 @@
-"""From run folders to one tidy frame, a row for each trial."""
+"""From run folders to two tidy frames: a row for each planning query, a row for each drive."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from dataclasses import fields
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pandas as pd
 from pandas.api.types import is_bool_dtype, is_numeric_dtype
 from tqdm import tqdm
 
+from gapath.drive_task import DriveRow
 from gapath.errors import InputError, require
+from gapath.plan_task import PlanRow
 from gapath.runfolder import sha256
 
 from .runs import Run, find_runs
 
-TEXT = ("experiment", "map", "map_source", "corner_cutting", "planner", "status")
-NUMBERS = (
-    "map_instance", "width", "height", "seed", "trial", "cost", "optimal_cost", "optimality_ratio",
-    "length", "turns", "clearance", "curvature", "epochs", "evaluations", "expansions",
-    "plan_time_s",
-)  # fmt: skip
-_SETTING = ["experiment", "map", "map_instance", "planner", "seed"]
+_ROWS: dict[str, type[Any]] = {"plan": PlanRow, "drive": DriveRow}
+"""The rows of each task."""
+
+_LATER = ("start", "target")
+"""Columns that the rows of older runs lack; empty there."""
+
+_CHECKS: dict[Any, tuple[Callable[[pd.Series], bool], str]] = {
+    int: (is_numeric_dtype, "numbers"),
+    float: (is_numeric_dtype, "numbers"),
+    bool: (is_bool_dtype, "booleans"),
+}
 
 
 class Skipped(NamedTuple):
@@ -32,15 +39,17 @@ class Skipped(NamedTuple):
 class Collected(NamedTuple):
     """What `collect` gives."""
 
-    frame: pd.DataFrame
-    """One row a trial: the columns of ``trials.parquet``, and ``key``."""
+    plans: pd.DataFrame
+    """One row a planning query: the columns of ``trials.parquet``, and ``key``."""
+    drives: pd.DataFrame
+    """One row a drive, likewise."""
     skipped: list[Skipped]
 
 
 def collect(folder: str | Path) -> Collected:
     """Read the trials of all runs below a folder.
 
-    Of several runs of the same experiment, map, planner and seed (made by other versions, or
+    Of several runs of the same experiment, map, method and seed (made by other versions, or
     with another number of trials) only the newest counts: pooled, its trials would be
     counted twice.
 
@@ -51,8 +60,8 @@ def collect(folder: str | Path) -> Collected:
 
     Returns
     -------
-    frame : DataFrame
-        One row a trial, failures included; empty if no run can be used.
+    plans, drives : DataFrame
+        One row a trial, failures included; empty if no run of the task can be used.
     skipped : list of Skipped
         The runs that were left out, and why.
 
@@ -74,23 +83,29 @@ def read_trials(runs: Iterable[Run]) -> Collected:
 
     Returns
     -------
-    frame : DataFrame
+    plans, drives : DataFrame
         One row a trial.
     skipped : list of Skipped
         The runs that were left out, and why.
     """
-    frames, skipped = [], []
+    frames: dict[str, list[pd.DataFrame]] = {task: [] for task in _ROWS}
+    skipped = []
     kept, older = _newest(runs)
     skipped += [Skipped(run.name, run.fault) for run in kept if run.fault]
     skipped += [Skipped(run.name, f"older than {new}, of the same setting") for run, new in older]
     for run in tqdm([run for run in kept if not run.fault], "runs", disable=None):
         try:
-            frames.append(_trials(run).assign(key=run.folder.name))
+            frames[run.task].append(_trials(run))
         except InputError as error:
             skipped.append(Skipped(run.name, str(error)))
-    columns = [*TEXT, *NUMBERS, "feasible", "key"]
-    frame = pd.concat(frames, ignore_index=True) if frames else pd.DataFrame(columns=columns)
-    return Collected(frame, sorted(skipped))
+    plans, drives = (_joined(task, frames[task]) for task in ("plan", "drive"))
+    return Collected(plans, drives, sorted(skipped))
+
+
+def _joined(task: str, frames: list[pd.DataFrame]) -> pd.DataFrame:
+    if frames:
+        return pd.concat(frames, ignore_index=True)
+    return pd.DataFrame(columns=[*(field.name for field in fields(_ROWS[task])), "key"])
 
 
 def _newest(runs: Iterable[Run]) -> tuple[list[Run], list[tuple[Run, str]]]:
@@ -99,8 +114,7 @@ def _newest(runs: Iterable[Run]) -> tuple[list[Run], list[tuple[Run, str]]]:
     newest: dict[tuple[object, ...], Run] = {}
     kept, older = [], []
     for run in runs:
-        setting = tuple(run.manifest.get(name) for name in _SETTING)
-        first = run if run.fault else newest.setdefault(setting, run)
+        first = run if run.fault else newest.setdefault(run.setting, run)
         if first is run:
             kept.append(run)
         else:
@@ -110,6 +124,7 @@ def _newest(runs: Iterable[Run]) -> tuple[list[Run], list[tuple[Run, str]]]:
 
 def _trials(run: Run) -> pd.DataFrame:
     """Read ``trials.parquet``; its hash is checked, as every number comes from it."""
+    kind = _ROWS[run.task]
     path = run.folder / "trials.parquet"
     expected = run.manifest["files"][path.name].get("sha256")
     try:
@@ -121,9 +136,11 @@ def _trials(run: Run) -> pd.DataFrame:
         raise
     except Exception as error:  # pyarrow raises more kinds than it documents
         raise InputError(path.name, type(error).__name__, "readable Parquet") from error
-    missing = sorted({*TEXT, *NUMBERS, "feasible"} - set(trials.columns))
+    trials = trials.assign(**{name: "" for name in _LATER if name not in trials})
+    missing = sorted({field.name for field in fields(kind)} - set(trials.columns))
     require(not missing, path.name, f"no column {', '.join(missing)}", "all columns of a trial")
-    wrong = [name for name in NUMBERS if not is_numeric_dtype(trials[name])]
-    wrong += [] if is_bool_dtype(trials["feasible"]) else ["feasible"]
-    require(not wrong, path.name, f"{wrong} of another type", "numbers, and feasible as booleans")
-    return trials
+    for field in fields(kind):
+        if field.type in _CHECKS:
+            fits, what = _CHECKS[field.type]
+            require(fits(trials[field.name]), f"{path.name}, {field.name}", "another type", what)
+    return trials.assign(key=run.folder.name)

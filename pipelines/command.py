@@ -6,8 +6,8 @@ _LISTS = set(",'\"")
 """A value with these would read as several in a sweep, or is part of one."""
 
 
-def as_sweep(commands: Iterable[str]) -> list[str]:
-    """Write the commands of a sweep's jobs as the one that does them all.
+def as_sweeps(commands: Iterable[str]) -> list[str]:
+    """Write the commands of sweeps' jobs as those that do them all.
 
     Parameters
     ----------
@@ -17,10 +17,17 @@ def as_sweep(commands: Iterable[str]) -> list[str]:
     Returns
     -------
     list of str
-        ``gapath -m key=value,value ...`` if they are all combinations of some values; else the
-        commands, each once.
+        For each experiment ``gapath -m key=value,value ...`` if its jobs are all combinations of
+        some values; else its commands, each once.
     """
-    commands = sorted(set(commands))
+    by_experiment: dict[str, list[str]] = {}
+    for command in sorted(set(commands)):
+        words = [word for word in command.split() if word.startswith("experiment=")]
+        by_experiment.setdefault(" ".join(words), []).append(command)
+    return [line for _, jobs in sorted(by_experiment.items()) for line in _as_sweep(jobs)]
+
+
+def _as_sweep(commands: list[str]) -> list[str]:
     jobs = [command.split() for command in commands]
     words, combinations = [], 1
     for column in zip(*jobs, strict=False):

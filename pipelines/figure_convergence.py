@@ -17,6 +17,7 @@ from .runs import Run
 from .section import Figure, Section
 from .text import number
 
+TASK = "plan"
 EXPERIMENT = "table1"
 ORDER = 30
 

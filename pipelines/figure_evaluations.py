@@ -11,6 +11,7 @@ from .runs import Run
 from .section import Figure, Section
 from .text import percent
 
+TASK = "plan"
 EXPERIMENT = "table1"
 ORDER = 40
 

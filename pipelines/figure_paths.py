@@ -22,6 +22,7 @@ from .runs import Run
 from .section import RECONSTRUCTED, Figure, Section
 from .text import number
 
+TASK = "plan"
 EXPERIMENT = "table1"
 ORDER = 50
 

@@ -73,8 +73,8 @@ def style() -> Iterator[None]:
         yield
 
 
-def panels(count: int, height: float) -> tuple[Canvas, list[Axes]]:
-    """Make a figure of panels, two in a row, with the same axes.
+def panels(count: int, height: float, same_axes: bool = True) -> tuple[Canvas, list[Axes]]:
+    """Make a figure of panels, two in a row.
 
     Parameters
     ----------
@@ -82,6 +82,8 @@ def panels(count: int, height: float) -> tuple[Canvas, list[Axes]]:
         Number of panels.
     height : float
         Of a panel, inches.
+    same_axes : bool
+        Whether all have the same axes.
 
     Returns
     -------
@@ -92,7 +94,7 @@ def panels(count: int, height: float) -> tuple[Canvas, list[Axes]]:
     """
     rows, cols = -(-count // 2), min(count, 2)
     canvas = Canvas(figsize=(WIDTH, 0.7 + height * rows), layout="constrained")
-    axes = list(canvas.subplots(rows, cols, sharex=True, sharey=True, squeeze=False).flat)
+    axes = list(canvas.subplots(rows, cols, sharex=same_axes, sharey=same_axes, squeeze=False).flat)
     for empty in axes[count:]:
         empty.set_axis_off()
     return canvas, axes[:count]
@@ -104,7 +106,8 @@ def legend(canvas: Canvas, look: dict[str, Look]) -> None:
         Line2D([], [], color=color, linestyle=dashes, label=label(name))
         for name, (color, dashes) in look.items()
     ]
-    canvas.legend(handles=handles, loc="outside upper center", ncols=len(handles), handlelength=2.6)
+    cols = len(handles) if len(handles) <= 5 else 3
+    canvas.legend(handles=handles, loc="outside upper center", ncols=cols, handlelength=2.6)
 
 
 def render(canvas: Canvas) -> tuple[bytes, bytes]:

@@ -5,6 +5,10 @@ KG18: Kwaśniewski & Gosiewski 2018, DOI 10.2478/ama-2018-0024.
 
 MAPS = ("kg18_test1", "kg18_test2", "kg18_test3", "kg18_test4")
 PLANNERS = ("ga1", "ga2", "ga3", "astar", "dijkstra")
+UNKNOWN_MAPS = ("kg18_map1", "kg18_map2", "kg18_map3", "kg18_map4")
+NAVIGATORS = (
+    "kg18", "kg18_fast", "kg18_astar", "replan_astar", "dstar_lite", "straight_astar",
+)  # fmt: skip
 
 _LABELS = {
     "ga1": "GA 1",
@@ -13,6 +17,14 @@ _LABELS = {
     "astar": "A*",
     "dijkstra": "Dijkstra",
     **{name: f"Map {name[-1]}" for name in MAPS},
+    **{name: f"Unknown map {name[-1]}" for name in UNKNOWN_MAPS},
+    "kg18_enclosed": "Enclosed target",
+    "kg18": "KG18",
+    "kg18_fast": "KG18 fast",
+    "kg18_astar": "KG18 + A*",
+    "replan_astar": "Repeated A*",
+    "dstar_lite": "D* Lite",
+    "straight_astar": "Straight or A*",
 }
 
 NOT_FOUND = None
@@ -37,6 +49,13 @@ SECONDS: dict[tuple[str, str], tuple[float | None, ...]] = {
     ("kg18_test4", "ga3"): (NOT_FOUND,) * 3,
 }
 """KG18 Table 1: computing time of three executions, s."""
+
+DRIVE_SECONDS = {
+    "kg18_map1": "1.4 to 2.2",
+    "kg18_map3": "3 to 11, 189 and 232",
+    "kg18_map4": "0 to 140",
+}
+"""What survives of KG18 Figs 17, 21 and 23: the axes of the computing time of 100 drives, s."""
 
 
 def found_seconds(map_name: str, planner: str) -> list[float]:
@@ -83,7 +102,7 @@ def label(name: str, source: str = "") -> str:
     Parameters
     ----------
     name : str
-        Of a map or planner, as in the configuration.
+        Of a map, planner or navigator, as in the configuration.
     source : str
         The map's source.
 
@@ -97,17 +116,17 @@ def label(name: str, source: str = "") -> str:
 
 
 def rank(name: str) -> tuple[int, str]:
-    """Give the place of a map or planner in the tables: the paper's order, then the alphabet's.
+    """Give the place of a map or method in the tables: the paper's order, then the alphabet's.
 
     Parameters
     ----------
     name : str
-        Of a map or planner, as in the configuration.
+        Of a map, planner or navigator, as in the configuration.
 
     Returns
     -------
     (int, str)
         A key to sort by.
     """
-    names = (*MAPS, *PLANNERS)
+    names = (*MAPS, *UNKNOWN_MAPS, "kg18_enclosed", *PLANNERS, *NAVIGATORS)
     return (names.index(name) if name in names else len(names), name)

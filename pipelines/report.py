@@ -3,7 +3,7 @@
 import base64
 import os
 import platform
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -17,7 +17,7 @@ from gapath.durable import write_whole
 from gapath.errors import InputError, require
 
 from .collect import Skipped, read_trials
-from .command import as_sweep
+from .command import as_sweeps
 from .runs import Run, find_runs
 from .section import Section, find_sections
 
@@ -66,16 +66,17 @@ def make_report(outputs: Path, folder: Path) -> tuple[list[Path], list[Skipped]]
         If there is no such folder, or no run in it that can be used.
     """
     runs = find_runs(outputs)
-    trials, skipped = read_trials(runs)
+    plans, drives, skipped = read_trials(runs)
     first = f"; {skipped[0].run}: {skipped[0].reason}" if skipped else ""
-    require(not trials.empty, outputs, f"{len(runs)} runs of which none can be used{first}",
-            "a finished run")  # fmt: skip
-    runs = _runs_of(trials, runs)
+    require(len(plans) + len(drives) > 0, outputs, f"{len(runs)} runs of which none can be used"
+            f"{first}", "a finished run")  # fmt: skip
+    runs = _runs_of([plans, drives], runs)
     parts = []
     modules = find_sections()
-    wanted = {module.EXPERIMENT for module in modules}
     for module in tqdm(modules, "sections", disable=None):
+        trials = {"plan": plans, "drive": drives}[module.TASK]
         if module.EXPERIMENT is None:
+            wanted = {other.EXPERIMENT for other in modules if other.TASK == module.TASK}
             mine = trials[~trials["experiment"].isin(wanted)]
         else:
             mine = trials[trials["experiment"] == module.EXPERIMENT]
@@ -84,7 +85,7 @@ def make_report(outputs: Path, folder: Path) -> tuple[list[Path], list[Skipped]]
             parts.append(part)
             skipped += [Skipped(*entry) for entry in part.section.skipped]
     skipped = list(dict.fromkeys(skipped))  # two figures may read the same log
-    page = render_page(parts, trials, runs, skipped)
+    page = render_page(parts, [plans, drives], runs, skipped)
     files = [file for part in parts for file in _files(part.section)]
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -96,7 +97,10 @@ def make_report(outputs: Path, folder: Path) -> tuple[list[Path], list[Skipped]]
 
 
 def render_page(
-    parts: Sequence[Part], trials: pd.DataFrame, runs: Sequence[Run], skipped: Sequence[Skipped]
+    parts: Sequence[Part],
+    trials: Sequence[pd.DataFrame],
+    runs: Sequence[Run],
+    skipped: Sequence[Skipped],
 ) -> str:
     """Render the page: one file that asks nothing of a network.
 
@@ -104,8 +108,8 @@ def render_page(
     ----------
     parts : sequence of Part
         The sections in their order.
-    trials : DataFrame
-        All trials.
+    trials : sequence of DataFrame
+        All trials, a frame a task.
     runs : sequence of Run
         The runs they come from.
     skipped : sequence of Skipped
@@ -127,9 +131,9 @@ def render_page(
     return environment.get_template("report.html.j2").render(
         css=(_HERE / "report.css").read_text(encoding="utf-8"),
         parts=parts,
-        trials=len(trials),
+        trials=sum(map(len, trials)),
         runs=runs,
-        reconstructed=bool((trials["map_source"] == "reconstructed").any()),
+        reconstructed=any((frame["map_source"] == "reconstructed").any() for frame in trials),
         skipped=skipped,
         versions=_versions(runs),
         machine=_machine(),
@@ -137,19 +141,19 @@ def render_page(
     )
 
 
-def _runs_of(trials: pd.DataFrame, runs: Sequence[Run]) -> list[Run]:
+def _runs_of(trials: Iterable[pd.DataFrame], runs: Sequence[Run]) -> list[Run]:
     """Give the runs that the trials come from."""
-    used = set(trials["key"])
+    used = {key for frame in trials for key in frame["key"]}
     return [run for run in runs if run.folder.name in used]
 
 
 def _part(module: ModuleType, trials: pd.DataFrame, runs: Sequence[Run]) -> Part | None:
     """Ask a module for its section; None where it has nothing to show."""
-    runs = _runs_of(trials, runs)
+    runs = _runs_of([trials], runs)
     section = module.section(trials, runs) if len(trials) else None
     if section is None:
         return None
-    commands = as_sweep(run.manifest["command"] for run in runs)
+    commands = as_sweeps(run.manifest["command"] for run in runs)
     return Part(module.__name__.rpartition(".")[2], section, commands)
 
 

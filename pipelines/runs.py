@@ -56,6 +56,17 @@ class Run:
         return f"{self.folder.parent.name}/{self.folder.name}"
 
     @property
+    def task(self) -> str:
+        """What its trials are: "plan" or "drive"; runs of before there were drives do not say."""
+        return str(self.manifest.get("task", "plan"))
+
+    @property
+    def setting(self) -> str:
+        """What it shares with runs of which only the newest counts; older ones give no hash."""
+        names = ("experiment", "map", "map_instance", "planner", "seed")
+        return str(self.manifest.get("setting", [self.manifest[name] for name in names]))
+
+    @property
     def bytes(self) -> int:
         """Size of all its files."""
         total = 0
@@ -101,8 +112,8 @@ def summary(runs: Iterable[Run]) -> list[dict[str, str]]:
     Returns
     -------
     list of dict
-        One a run: key, experiment, map, planner, trials, state, date and size; "?" where no
-        manifest says it.
+        One a run: key, experiment, map, planner (or navigator), trials, state, date and size;
+        "?" where no manifest says it.
     """
     rows = []
     for run in runs:
@@ -181,6 +192,8 @@ def _manifest(folder: Path) -> dict[str, Any]:
     for name, kind in _MANIFEST.items():
         value = manifest.get(name)
         require(isinstance(value, kind), f"{MANIFEST}, {name}", value, kind.__name__)
+    task = manifest.get("task", "plan")
+    require(task in ("plan", "drive"), f"{MANIFEST}, task", task, "plan or drive")
     return manifest
 
 

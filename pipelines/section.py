@@ -2,6 +2,7 @@
 
 A section is one file of this folder, ``table*.py`` or ``figure_*.py``, that offers
 
+- ``TASK``: "plan" or "drive": it sees trials of this task only;
 - ``EXPERIMENT``: the experiment whose trials it wants, or None for those that no other wants;
 - ``ORDER``: its place on the page, a number;
 - ``section(trials, runs)``: a frame of trials and the runs they come from -> `Section`.

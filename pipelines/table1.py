@@ -10,6 +10,7 @@ from .section import RECONSTRUCTED, Section, Table
 from .summary import Spread, summarise_by
 from .text import NOTHING, middle, number, percent, percent_range, span
 
+TASK = "plan"
 EXPERIMENT = "table1"
 ORDER = 10
 

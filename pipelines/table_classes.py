@@ -11,6 +11,7 @@ from .statistics import wilson
 from .summary import summarise
 from .text import middle, number, percent, percent_range
 
+TASK = "plan"
 EXPERIMENT = "classes"
 ORDER = 20
 

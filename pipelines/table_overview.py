@@ -10,12 +10,13 @@ from .section import Section, Table
 from .summary import summarise_by
 from .text import number, percent, percent_range
 
+TASK = "plan"
 EXPERIMENT = None
 ORDER = 90
 
 
 def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
-    """Make the section that lists trials by experiment, map and planner.
+    """Make the section that lists trials by experiment, map, its start and target, and planner.
 
     Parameters
     ----------
@@ -29,15 +30,16 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
     Section
         A row for each experiment, map and planner.
     """
-    by = ["experiment", "map", "map_source", "planner"]
+    by = ["experiment", "map", "map_source", "start", "target", "planner"]
     rows = summarise_by(trials, by)
     instances = trials.groupby(by)["map_instance"].nunique()
-    rows.insert(4, "instances", [instances[tuple(row)] for row in rows[by].to_numpy()])
+    rows.insert(len(by), "instances", [instances[tuple(row)] for row in rows[by].to_numpy()])
     shown = [
         {
             "Experiment": row["experiment"],
             "Map": label(row["map"], row["map_source"]),
             "Planner": label(row["planner"]),
+            "From, to": f"{row['start']} {row['target']}",
             "Instances": number(row["instances"]),
             "Trials": number(row["n"]),
             "Found, %": percent(row["success"]),

@@ -8,7 +8,15 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from gapath.events import Evolved, RunFinished, RunStarted, TrialFinished, TrialStarted
+from gapath.events import (
+    DriveFinished,
+    Evolved,
+    RunFinished,
+    RunStarted,
+    Stepped,
+    TrialFinished,
+    TrialStarted,
+)
 from gapath.grid import GridMap
 from gapath.problem import Evolution, PlanStatus, Problem
 from gapath.recorders.mcap import Recorder
@@ -42,6 +50,7 @@ def make_trials(grid: GridMap, planner: str, experiment: str, seed: int, n: int)
     return pd.DataFrame({
         "experiment": experiment, "map": grid.name, "map_instance": grid.instance,
         "map_source": grid.source, "width": grid.cols, "height": grid.rows,
+        "start": str(grid.start), "target": str(grid.target),
         "corner_cutting": "allow", "planner": planner, "seed": seed, "trial": np.arange(n),
         "status": np.where(feasible, "found", "not_found"), "feasible": feasible, "cost": cost,
         "optimal_cost": 11.0, "optimality_ratio": np.where(feasible, cost / 11.0, np.nan),
@@ -60,6 +69,7 @@ def write_log(folder: Path, grid: GridMap, trials: pd.DataFrame) -> None:
         RunStarted(
             first["experiment"],
             first["planner"],
+            "plan",
             problem,
             int(first["seed"]),
             len(trials),
@@ -95,6 +105,56 @@ def write_log(folder: Path, grid: GridMap, trials: pd.DataFrame) -> None:
             )
         )
     recorder.record(RunFinished(step, len(trials), int(trials["feasible"].sum())))
+    recorder.close()
+
+
+def make_drives(grid: GridMap, navigator: str, experiment: str, n: int) -> pd.DataFrame:
+    random = np.random.default_rng([grid.instance, len(navigator), int(grid.name[-1])])
+    is_ga = navigator.startswith("kg18")
+    fails = is_ga and grid.name == "kg18_map4" and "astar" not in navigator
+    reached = random.random(n) > 0.3 * fails * (grid.instance % 2 == 0)
+    steps = 21 + random.integers(0, 5, n) * is_ga
+    return pd.DataFrame({
+        "experiment": experiment, "map": grid.name, "map_instance": grid.instance,
+        "map_source": grid.source, "width": grid.cols, "height": grid.rows,
+        "start": str(grid.start), "target": str(grid.target),
+        "corner_cutting": "allow", "navigator": navigator, "seed": 0, "trial": np.arange(n),
+        "outcome": np.where(reached, "reached", "returned"), "reached": reached,
+        "steps": np.where(reached, steps, 60), "shortest_steps": 21.0,
+        "steps_ratio": np.where(reached, steps / 21.0, np.nan), "ga_calls": 6,
+        "calls_a": np.where(reached, 0, 9), "calls_b": 2 * is_ga, "calls_c": 4, "replans": 3,
+        "returns": np.where(reached, 0, 1), "stands": 0, "evaluations": 4000 * is_ga,
+        "seen_fields": 300, "cost": 11.5, "length": 25.0, "turns": 4, "clearance": 1.0,
+        "curvature": 0.1, "compute_time_s": (0.004 + 1e-5 * steps) * (10 if is_ga else 1),
+    })  # fmt: skip
+
+
+def write_drive_log(folder: Path, grid: GridMap, drives: pd.DataFrame) -> None:
+    first = drives.iloc[0]
+    problem = Problem(grid, grid.start, grid.target)
+    recorder = Recorder(flush_every=100)
+    recorder.open(str(folder))
+    recorder.record(
+        RunStarted(
+            first["experiment"], first["navigator"], "drive", problem, 0, len(drives),
+            "navigator: {}\n", {"gapath": "0"}, make_path(0), 11.0,
+        )
+    )  # fmt: skip
+    step = 0
+    for row in drives.itertuples():
+        recorder.record(TrialStarted(step, row.trial, row.seed))
+        there = make_path(row.trial)
+        path = there if row.reached else np.concatenate([there[:9], there[:8][::-1]])
+        for x, y in path.tolist():
+            recorder.record(
+                Stepped(
+                    step, row.trial, (x, y), 0, 0, np.array([[x, y]], dtype=np.int32),
+                    np.array([5], dtype=np.int32), 1e-4,
+                )
+            )  # fmt: skip
+            step += 1
+        recorder.record(DriveFinished(step - 1, row.trial, 0 if row.reached else 1, len(path) - 1))
+    recorder.record(RunFinished(step, len(drives), int(drives["reached"].sum())))
     recorder.close()
 
 
@@ -160,6 +220,56 @@ def make_run() -> Callable[..., Path]:
         return folder
 
     return make
+
+
+@pytest.fixture(scope="session")
+def make_drive_run() -> Callable[..., Path]:
+    """Write one synthetic run folder of drives."""
+
+    def make(
+        outputs: Path,
+        experiment: str,
+        map_name: str,
+        navigator: str,
+        *,
+        instance: int = 0,
+        n: int = 12,
+        log: bool = False,
+    ) -> Path:
+        grid = make_map(map_name, instance)
+        key = hashlib.sha256(f"{experiment} {map_name} {navigator} {instance}".encode())
+        folder = outputs / experiment / key.hexdigest()[:16]
+        folder.mkdir(parents=True)
+        drives = make_drives(grid, navigator, experiment, n)
+        drives.to_parquet(folder / "trials.parquet")
+        (folder / "config.yaml").write_text("seed: 0\n")
+        if log:
+            write_drive_log(folder, grid, drives)
+        write_manifest(
+            folder, map=map_name, map_instance=instance, task="drive", planner=navigator, seed=0,
+            trials=n,
+        )  # fmt: skip
+        write_status(folder, "done")
+        return folder
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def drive_outputs(
+    tmp_path_factory: pytest.TempPathFactory, make_drive_run: Callable[..., Path]
+) -> Path:
+    """Give the run folders of the experiments with drives; read only."""
+    folder = tmp_path_factory.mktemp("drives")
+    for name in ("kg18_map1", "kg18_map4"):
+        for navigator in ("kg18", "kg18_astar", "replan_astar"):
+            make_drive_run(folder, "drives", name, navigator, log=True)
+            for instance in range(3):
+                make_drive_run(folder, "drive_classes", name, navigator, instance=instance)
+    for navigator in ("kg18", "kg18[sensor.range=8]", "kg18[sensor.range=10]", "kg18_astar"):
+        for instance in range(3):
+            make_drive_run(folder, "drive_choices", "kg18_map4", navigator, instance=instance)
+    return folder
 
 
 @pytest.fixture(scope="session")

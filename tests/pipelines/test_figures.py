@@ -15,7 +15,7 @@ from gapath.problem import PlanStatus
 
 @pytest.fixture(scope="module")
 def case(outputs):
-    frame = collect(outputs).frame
+    frame = collect(outputs).plans
     runs = [run for run in find_runs(outputs) if run.folder.parent.name == "table1"]
     return frame[frame["experiment"] == "table1"], runs
 

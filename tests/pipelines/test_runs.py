@@ -34,7 +34,7 @@ def test_unfinished_runs_are_not_used_and_say_why(run, state):
     write_status(run, state, text="Traceback:\n  ...\nOSError: disk full")
     found = only(run)
     assert (found.state, found.fault) == (state, f"{state}: OSError: disk full")
-    frame, skipped = collect(run.parent.parent)
+    frame, _, skipped = collect(run.parent.parent)
     assert frame.empty
     assert skipped == [(f"table1/{run.name}", found.fault)]
 
@@ -103,7 +103,7 @@ def test_no_folder_and_no_runs(tmp_path):
 
 
 def test_all_trials_are_collected_failures_too(outputs):
-    frame, skipped = collect(outputs)
+    frame, _, skipped = collect(outputs)
     assert skipped == []
     assert len(frame) == 4 * 5 * (20 + 3 * 4)
     assert frame["key"].nunique() == 4 * 5 * 4
@@ -117,7 +117,7 @@ def test_the_newest_run_of_a_setting_counts_alone(tmp_path, make_run):
     for key, date, n in [("b", "2026-01-02T00:00", 7), ("a", "2026-01-03T00:00", 3)]:
         make_run(tmp_path, "table1", "kg18_test1", "ga1", n=n, log=False, date=date, key=key)
     make_run(tmp_path, "table1", "kg18_test1", "ga1", n=4, seed=1, log=False)
-    frame, skipped = collect(tmp_path)
+    frame, _, skipped = collect(tmp_path)
     assert sorted(frame.groupby("seed").size()) == [3, 4]
     assert [run for run, _ in skipped] == ["table1/b"]
     assert "table1/a" in skipped[0].reason
@@ -129,7 +129,7 @@ def test_a_broken_newer_run_does_not_hide_a_whole_older_one(tmp_path, make_run):
         tmp_path, "table1", "kg18_test1", "ga1", log=False, key="new", date="2026-02-01T00:00"
     )
     (new / "config.yaml").unlink()
-    frame, skipped = collect(tmp_path)
+    frame, _, skipped = collect(tmp_path)
     assert set(frame["key"]) == {"old"}
     assert [run for run, _ in skipped] == ["table1/new"]
 
@@ -142,7 +142,7 @@ def flip(path):
 
 def test_flipped_rows_are_noticed(run):
     flip(run / "trials.parquet")
-    _, skipped = collect(run.parent.parent)
+    skipped = collect(run.parent.parent).skipped
     assert "SHA-256" in skipped[0].reason
 
 
@@ -159,7 +159,7 @@ def test_rows_of_another_shape_are_named(run, spoil, named):
 
     spoil(pd.read_parquet(run / "trials.parquet")).to_parquet(run / "trials.parquet")
     write_manifest(run, map="kg18_test1", map_instance=0, planner="ga1", seed=0, trials=5)
-    frame, skipped = collect(run.parent.parent)
+    frame, _, skipped = collect(run.parent.parent)
     assert frame.empty
     assert named in skipped[0].reason
 
@@ -169,7 +169,7 @@ def test_a_file_that_is_no_parquet_is_named_and_the_others_are_read(run, make_ru
     make_run(outputs, "table1", "kg18_test2", "ga1", n=3, log=False)
     (run / "trials.parquet").write_bytes(b"no parquet")
     write_manifest(run, map="kg18_test1", map_instance=0, planner="ga1", seed=0, trials=5)
-    frame, skipped = collect(outputs)
+    frame, _, skipped = collect(outputs)
     assert len(frame) == 3
     assert "readable Parquet" in skipped[0].reason
     shutil.rmtree(run)

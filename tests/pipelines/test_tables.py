@@ -76,7 +76,7 @@ def test_the_papers_seconds_as_epochs():
 
 
 def test_table1_puts_the_paper_beside_ours(outputs):
-    frame = collect(outputs).frame
+    frame = collect(outputs).plans
     mine = frame[frame["experiment"] == "table1"]
     section = table1.section(mine, [])
     beside, effort = section.tables
@@ -118,7 +118,7 @@ def test_classes_count_instances_not_trials():
 
 
 def test_overview_has_a_row_for_each_setting(outputs):
-    frame = collect(outputs).frame
+    frame = collect(outputs).plans
     (table,) = table_overview.section(frame, []).tables
     assert len(table.shown) == 40
     assert table.data["n"].sum() == len(frame)
@@ -140,7 +140,7 @@ def test_the_three_forms_of_a_table():
 
 
 def test_every_latex_table_is_ascii(outputs):
-    frame = collect(outputs).frame
+    frame = collect(outputs).plans
     for module in (table1, table_classes, table_overview):
         for table in module.section(frame, []).tables:
             assert table.latex().isascii()

@@ -4,7 +4,7 @@ from itertools import product
 
 import pytest
 from gapath.pipelines import text
-from gapath.pipelines.command import as_sweep
+from gapath.pipelines.command import as_sweeps
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -50,7 +50,7 @@ VALUES = st.lists(st.text("abc019", min_size=1, max_size=3), min_size=1, max_siz
 @given(VALUES, VALUES)
 def test_a_sweep_stands_for_exactly_its_jobs(maps, planners):
     jobs = [f"gapath map={m} planner={p} trials=5" for m, p in product(maps, planners)]
-    (line,) = as_sweep(jobs * 2)
+    (line,) = as_sweeps(jobs * 2)
     if len(jobs) == 1:
         assert line == jobs[0]
         return
@@ -71,4 +71,13 @@ def test_a_sweep_stands_for_exactly_its_jobs(maps, planners):
     ],
 )
 def test_commands_that_are_no_sweep_stay_as_they_are(commands):
-    assert as_sweep(commands) == sorted(commands)
+    assert as_sweeps(commands) == sorted(commands)
+
+
+def test_each_experiment_is_a_sweep_of_its_own():
+    jobs = [f"gapath map={m} navigator={n} experiment=far" for m in "ab" for n in "xy"]
+    jobs += [f"gapath map=c navigator={n} experiment=near" for n in "xyz"]
+    assert as_sweeps(jobs) == [
+        "gapath -m map=a,b navigator=x,y experiment=far",
+        "gapath -m map=c navigator=x,y,z experiment=near",
+    ]

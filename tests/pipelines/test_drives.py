@@ -1,0 +1,301 @@
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+from gapath.pipelines import (
+    figure_drive_paths,
+    figure_drive_ratios,
+    figure_drive_times,
+    table_drive_choices,
+    table_drive_classes,
+    table_drives,
+    table_drives_overview,
+)
+from gapath.pipelines.collect import collect
+from gapath.pipelines.drive_summary import over_instances, summarise_drives
+from gapath.pipelines.report import make_report
+from gapath.pipelines.runs import find_runs
+from gapath.pipelines.statistics import wilson
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gapath.driving import Outcome
+from gapath.errors import InputError
+from gapath.events import Stepped
+from gapath.recorders.mcap import FILE, read_events
+
+from .conftest import write_manifest
+
+TABLES = (table_drives, table_drive_classes, table_drive_choices, table_drives_overview)
+FIGURES = (figure_drive_times, figure_drive_paths, figure_drive_ratios)
+
+
+@pytest.fixture(scope="module")
+def case(drive_outputs):
+    return collect(drive_outputs).drives, find_runs(drive_outputs)
+
+
+def of(case, experiment):
+    drives, runs = case
+    return (
+        drives[drives["experiment"] == experiment],
+        [run for run in runs if run.folder.parent.name == experiment],
+    )
+
+
+def drives_of(**columns):
+    defaults = {
+        "map": "kg18_map4", "map_source": "array", "map_instance": 0, "navigator": "kg18",
+        "outcome": "reached", "reached": True, "steps": 100, "steps_ratio": 1.0, "replans": 1,
+        "calls_a": 0, "calls_b": 0, "calls_c": 1, "evaluations": 10, "compute_time_s": 0.5,
+    }  # fmt: skip
+    frame = pd.DataFrame(columns)
+    return frame.assign(**{k: v for k, v in defaults.items() if k not in frame})
+
+
+def test_plans_and_drives_do_not_mix(tmp_path, make_run, make_drive_run):
+    make_run(tmp_path, "mine", "kg18_test1", "ga1", n=3, log=False)
+    make_drive_run(tmp_path, "mine", "kg18_map1", "kg18", n=4)
+    plans, drives, skipped = collect(tmp_path)
+    assert (len(plans), len(drives), skipped) == (3, 4, [])
+    assert "navigator" not in plans
+    assert "planner" not in drives
+    assert plans["feasible"].dtype == drives["reached"].dtype == bool
+    page = make_report(tmp_path, tmp_path / "report")[0][-1].read_text()
+    assert page.count("Other trials") == page.count("Other drives") == 2  # heading and link
+    assert "7 trials in 2 runs" in page
+
+
+@pytest.mark.parametrize("task", ["fly", 3, None])
+def test_a_task_that_nobody_knows_is_named(tmp_path, make_drive_run, task):
+    run = make_drive_run(tmp_path, "mine", "kg18_map1", "kg18")
+    write_manifest(
+        run, map="kg18_map1", map_instance=0, planner="kg18", seed=0, trials=12, task=task
+    )
+    assert "manifest.json, task" in find_runs(tmp_path)[0].fault
+
+
+def test_rows_of_the_other_task_are_named(tmp_path, make_drive_run):
+    run = make_drive_run(tmp_path, "mine", "kg18_map1", "kg18")
+    write_manifest(run, map="kg18_map1", map_instance=0, planner="kg18", seed=0, trials=12)
+    assert "no column" in collect(tmp_path).skipped[0].reason
+
+
+@pytest.mark.parametrize("settings", [("a", "b"), ("a", "a")])
+def test_only_runs_of_the_same_setting_supersede_each_other(tmp_path, make_drive_run, settings):
+    for n, setting in enumerate(settings, start=2):
+        run = make_drive_run(tmp_path, f"x{n}", "kg18_map1", "kg18", n=n)
+        write_manifest(
+            run, map="kg18_map1", map_instance=0, planner="kg18", seed=0, trials=n, task="drive",
+            experiment="x", setting=setting,
+        )  # fmt: skip
+    assert len(collect(tmp_path).drives) == (5 if settings == ("a", "b") else 3)
+
+
+def test_rows_without_start_and_target_are_older_ones(tmp_path, make_drive_run):
+    run = make_drive_run(tmp_path, "mine", "kg18_map1", "kg18")
+    rows = pd.read_parquet(run / "trials.parquet").drop(columns=["start", "target"])
+    rows.to_parquet(run / "trials.parquet")
+    write_manifest(
+        run, map="kg18_map1", map_instance=0, planner="kg18", seed=0, trials=12, task="drive"
+    )
+    assert set(collect(tmp_path).drives["target"]) == {""}
+
+
+def test_a_summary_worked_by_hand():
+    row = summarise_drives(
+        drives_of(
+            outcome=["reached", "returned", "reached", "overran"],
+            reached=[True, False, True, False],
+            steps=[100, 60, 120, 2000],
+            steps_ratio=[1.0, math.nan, 1.2, math.nan],
+            calls_a=[0, 9, 0, 3],
+        )
+    )
+    assert [row[name] for name in ("n", "reached", "returned", "overran")] == [4, 2, 1, 1]
+    assert (row["returned_low"], row["returned_high"]) == wilson(0.25, 4)
+    assert row["steps_median"] == 110  # failures count
+    assert row["steps_ratio_median"] == pytest.approx(1.1)
+    assert row["calls_a"] == 3
+
+
+def test_who_draws_no_random_number_has_no_interval():
+    alike = drives_of(steps=[100] * 5, evaluations=0)
+    assert math.isnan(summarise_drives(alike)["reached_low"])
+    assert summarise_drives(alike.assign(evaluations=5))["reached_low"] == wilson(1.0, 5)[0]
+    changing = alike.assign(steps=[100, 100, 101, 99, 100])  # the map differed by trial
+    assert summarise_drives(changing)["reached_low"] == wilson(1.0, 5)[0]
+
+
+@given(st.lists(st.tuples(st.integers(0, 4), st.booleans()), min_size=1, max_size=30))
+def test_over_instances_weighs_instances_alike(rows):
+    frame = pd.DataFrame(rows, columns=["map_instance", "reached"])
+    rate, interval, instances = over_instances(frame)
+    rates = [
+        np.mean([reached for other, reached in rows if other == instance])
+        for instance in {instance for instance, _ in rows}
+    ]
+    assert instances == len(rates)
+    assert rate == pytest.approx(np.mean(rates))
+    assert interval == pytest.approx(wilson(float(np.mean(rates)), len(rates)))
+
+
+@given(st.lists(st.tuples(st.integers(10, 30), st.booleans()), min_size=1, max_size=30))
+def test_arrived_within_counts_as_the_definition_does(rows):
+    frame = pd.DataFrame(rows, columns=["steps_ratio", "reached"])
+    ratios, shares = figure_drive_ratios.arrived_within(frame)
+    assert list(ratios) == sorted({ratio for ratio, reached in rows if reached})
+    for at, share in zip(ratios, shares, strict=True):
+        assert share == pytest.approx(np.mean([reached and ratio <= at for ratio, reached in rows]))
+
+
+def test_table_of_drives(case):
+    trials, runs = of(case, "drives")
+    section = table_drives.section(trials, runs)
+    outcomes, effort = (t.shown.set_index(["Map", "Navigator"]) for t in section.tables)
+    assert len(outcomes) == len(effort) == 6
+    hard = ("Unknown map 4 (reconstructed)", "KG18")
+    ours = trials[(trials["map"] == "kg18_map4") & (trials["navigator"] == "kg18")]
+    assert 0 < ours["reached"].mean() < 1
+    assert float(outcomes.loc[hard, "Reached, %"].split()[0]) == pytest.approx(
+        100 * ours["reached"].mean(), abs=0.1
+    )
+    assert outcomes.loc[hard, "Overran, %"].startswith("0 (0.0 to ")
+    assert outcomes.loc[(hard[0], "Repeated A*"), "Reached, %"] == "100"
+    assert effort.loc[hard, "Paper: time, s"] == "0 to 140"
+    assert effort.loc[(hard[0], "KG18 + A*"), "Paper: time, s"] == "\N{EN DASH}"
+    # The fewest steps and the least time are those of the numbers, whoever wins.
+    (said,) = (text for text in section.remarks if text.startswith("Unknown map 4, of those"))
+    assert "fewest steps by Repeated A*, median 21" in said
+    assert "the quickest is Repeated A*" in said
+
+
+def test_no_winner_is_named_where_nobody_arrives():
+    mine = drives_of(navigator=["kg18", "replan_astar"], reached=False, outcome="returned",
+                     steps_ratio=math.nan)  # fmt: skip
+    assert not any("fewest" in text for text in table_drives.section(mine, []).remarks)
+
+
+def test_classes_count_instances_and_name_those_that_failed():
+    mine = drives_of(
+        map_instance=[0, 0, 0, 0, 1, 1, 2, 2],
+        reached=[True] * 5 + [False] * 3,
+        outcome=["reached"] * 5 + ["returned"] * 3,
+    )
+    (row,) = table_drive_classes.summarise_classes(mine).to_dict("records")
+    assert row["reached"] == pytest.approx(0.5)
+    assert (row["reached_low"], row["reached_high"]) == pytest.approx(wilson(0.5, 3))
+    assert (row["instances"], row["n"], row["always"], row["never"]) == (3, 8, 1, 1)
+    failed = table_drive_classes.failing_instances(mine)
+    assert list(failed["map_instance"]) == [1, 2]
+    assert list(failed["returned"]) == [1, 2]
+    more = pd.concat([mine, mine[-2:].assign(map_instance=3)])
+    remarks = table_drive_classes.section(more, []).remarks
+    assert "3 of unknown map 4; the two worst make 80 %" in remarks[-1]
+
+
+def test_classes_without_a_failure_have_no_second_table():
+    section = table_drive_classes.section(drives_of(map_instance=[0, 1]), [])
+    assert len(section.tables) == 1
+    assert "every drive" in section.remarks[-1]
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("kg18", {}),
+        ("kg18_fast", {"Least epochs, C": "3"}),
+        ("kg18[sensor.range=8]", {"Sensor range, layers": "8"}),
+        ("kg18[sensor.occlusion=True]", {"Obstacles hide what lies behind": "yes"}),
+        ("kg18[explore.sampling=span,replan[0].sampling=span,replan[3].sampling=span]",
+         {"Way points per": "span"}),
+        ("kg18_astar[return_penalty=3.0]",
+         {"Last planner, C": "A*", "Penalty on the way back, A": "3.0"}),
+        ("kg18[step_limit=50]", {"step_limit": "50"}),
+        ("dstar_lite", {"Navigator": "D* Lite"}),
+    ],
+)  # fmt: skip
+def test_what_a_name_says_was_varied(name, expected):
+    assert table_drive_choices.varied(name) == expected
+
+
+def test_choices_are_held_against_the_first_row(case):
+    trials, runs = of(case, "drive_choices")
+    (table,) = table_drive_choices.section(trials, runs).tables
+    assert list(table.shown["Decision"]) == [
+        "as described", "Last planner, C", "Sensor range, layers", "Sensor range, layers",
+    ]  # fmt: skip
+    assert list(table.shown["Value"]) == ["", "A*", "8", "10"]
+    rates = trials.groupby(["navigator", "map_instance"])["reached"].mean()
+    better = (rates["kg18_astar"] > rates["kg18"]).sum()
+    assert better > 0
+    assert list(table.data["better"])[:2] == [0, better]
+    assert list(table.data["worse"])[:2] == [0, 0]
+
+
+def test_trails_are_those_of_the_log(case):
+    _, runs = of(case, "drives")
+    run = next(run for run in runs if run.manifest["map"] == "kg18_map4")
+    example = figure_drive_paths.read_trails(read_events(run.folder / FILE), {0, 3, 7})
+    places: dict[int, list[tuple[int, int]]] = {0: [], 3: [], 7: []}
+    for event in read_events(run.folder / FILE):
+        if isinstance(event, Stepped) and event.trial in places:
+            places[event.trial].append(event.place)
+    assert [trail.places.tolist() for trail in example.trails] == [
+        [list(place) for place in places[trial]] for trial in (0, 3, 7)
+    ]
+    for trail in example.trails:
+        ends = trail.places[0].tolist(), trail.places[-1].tolist()
+        assert (ends[0] != ends[1]) == (trail.outcome is Outcome.REACHED)
+
+
+def test_a_log_that_does_not_begin_with_its_run_is_refused():
+    with pytest.raises(InputError, match="RunStarted"):
+        figure_drive_paths.read_trails(iter([]), {0})
+
+
+def test_a_drive_that_failed_is_drawn_and_said(case):
+    trials, runs = of(case, "drives")
+    easy, hard = figure_drive_paths.section(trials, runs).figures
+    assert "KG18 returned, 16 steps." in hard.alt
+    assert "returned" not in easy.alt
+
+
+@pytest.mark.parametrize("module", FIGURES)
+def test_figures_are_the_same_bytes_each_time(case, module):
+    trials, runs = of(case, "drives")
+    first, second = module.section(trials, runs), module.section(trials, runs)
+    assert len(first.figures) == (2 if module is figure_drive_paths else 1)
+    for a, b in zip(first.figures, second.figures, strict=True):
+        assert (a.svg, a.png) == (b.svg, b.png)
+        assert a.caption
+        assert "map 4" in a.alt.lower() or "Drives drawn" in a.alt
+
+
+def test_histograms_state_their_failures(case):
+    trials, runs = of(case, "drives")
+    (figure,) = figure_drive_times.section(trials, runs).figures
+    count = (
+        trials.query("map == 'kg18_map4' and navigator == 'kg18'")["outcome"] == "returned"
+    ).sum()
+    assert f"returned {count}, overran 0 of 12" in figure.alt
+    assert "unknown map 4 0 to 140 s" in figure.caption
+
+
+@pytest.mark.parametrize("module", [figure_drive_times, figure_drive_paths])
+def test_without_drives_of_kg18_there_is_no_figure(case, module):
+    trials, _ = of(case, "drives")
+    assert module.section(trials[trials["navigator"] == "dstar_lite"], []) is None
+
+
+def test_the_page_has_every_section_and_every_table_in_ascii(case, drive_outputs, tmp_path):
+    files, skipped = make_report(drive_outputs, tmp_path)
+    assert skipped == []
+    page = files[-1].read_text()
+    for title in ("KG18 Sec. 6", "classes of unknown maps", "What the paper leaves open"):
+        assert title in page
+    assert "Other drives" not in page
+    for module in TABLES:
+        for table in module.section(*case).tables:
+            assert table.latex().isascii()
