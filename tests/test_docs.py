@@ -4,6 +4,7 @@ import re
 import runpy
 import shlex
 import shutil
+from dataclasses import asdict
 from importlib import import_module
 from pathlib import Path
 
@@ -18,7 +19,7 @@ from hydra.core.override_parser.overrides_parser import OverridesParser
 from omegaconf import OmegaConf
 
 import gapath.planners
-from gapath import cli, config, log_cli
+from gapath import cli, components, config, log_cli
 from gapath.problem import CornerCutting
 
 ROOT = Path(__file__).parents[1]
@@ -198,11 +199,11 @@ def check_gapath(words):
             jobs = BasicSweeper.split_arguments(parsed, None)[0]
         for overrides in jobs:
             loose = OmegaConf.to_container(compose("config", overrides=overrides))
-            settings = config.typed(config.Settings, loose, "")
-            config.build("planner", settings.planner, "planner")
+            settings = components.typed(config.Settings, loose, "")
+            config.make_task(asdict(settings))
             for name, values in settings.recorder.items():
-                config.build("recorder", values, f"recorder.{name}")
-            config.build("map", settings.map, "map")
+                components.build("recorder", values, f"recorder.{name}")
+            components.build("map", settings.map, "map")
 
 
 CHECKS = {"gapath": check_gapath, "gapath-log": check_log, "gapath-report": check_report}
@@ -250,7 +251,7 @@ def one_bend(tmp_path, monkeypatch):
     monkeypatch.setattr(
         test_contract,
         "make_planner",
-        lambda name: config.build("planner", yaml.safe_load(values), "planner"),
+        lambda name: components.build("planner", yaml.safe_load(values), "planner"),
     )
     return "one_bend"
 
