@@ -12,7 +12,7 @@ from strategies import planner, problems
 
 sys.path.insert(0, str(Path(__file__).parents[2]))  # benchmarks is not installed
 
-from benchmarks import __main__, exact, ga_run, logging, sweep, textbook
+from benchmarks import __main__, drives, exact, ga_run, logging, sweep, textbook
 from benchmarks.measure import MAPS, SETTINGS, interleave, make_planner, make_problem, quartiles
 from gapath.problem import CornerCutting, PlanStatus, Problem
 from gapath.rng import stream
@@ -88,6 +88,44 @@ def test_logged_trials_have_the_epochs_asked_for(tmp_path):
     assert all("evolution" not in vars(trial.plan) for trial in batch.trials)
     batch.recorder.close()
     assert (tmp_path / "run.mcap").stat().st_size > 0
+
+
+def test_a_clocked_drive_is_the_same_drive():
+    run = drives.make_drive_run("kg18_map1", "kg18", 1)
+    plain = drives.drive_once(run.task, run.problem, 3)
+    clocked, outside = drives.drive_clocked(run.task, run.problem, 3)
+    assert [frame.place for frame in clocked.frames] == [frame.place for frame in plain.frames]
+    assert plain.frames[-1].place == run.problem.target
+    assert 0 < outside < 1
+
+
+def test_every_navigator_takes_the_same_drives():
+    rows = drives.time_drives("kg18_map1", 2)
+    assert [row["navigator"] for row in rows] == list(drives.NAVIGATORS)
+    assert all(row["drives"] == row["reached"] == 2 for row in rows)
+    assert all(0 < row["drive ms"].lower <= row["drive ms"].upper for row in rows)
+    assert all(row["paper / drive"].median > 0 for row in rows)
+    assert ["outside planners" in row for row in rows] == [
+        name == "kg18" for name in drives.NAVIGATORS
+    ]
+
+
+def test_a_changed_drive_is_noticed(monkeypatch):
+    def another(task, problem, trial):
+        return drives.drive_once(task, problem, trial + 1), 0.5
+
+    monkeypatch.setattr(drives, "drive_clocked", another)
+    with pytest.raises(RuntimeError, match="kg18_map3: clocks around the planners changed"):
+        drives.time_drives("kg18_map3", 1)
+
+
+def test_drives_are_logged_and_recorded():
+    row = drives.time_logs("kg18_map1", 2)
+    assert np.isclose(row["driving s"] + row["rest s"], row["total s"])
+    assert row["driving s"] > 0 and row["rest s"] > 0 and row["log MB"] > 0
+    row = drives.time_recording(1)
+    assert row["steps"] == 500
+    assert row["recording s"].median > 0 and 0 < row["recording MB"] < 1
 
 
 def test_the_command_writes_what_it_prints(tmp_path, monkeypatch, capsys):
