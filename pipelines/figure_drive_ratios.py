@@ -68,7 +68,7 @@ def _figure(trials: pd.DataFrame) -> Figure:
             here = trials[trials["map"] == name]
             longest = max(1.1, here["steps_ratio"].max())
             limits = 1 - 0.04 * (longest - 1), longest + 0.04 * (longest - 1)
-            panel.set_title(label(name))
+            panel.set_title(label(name, here["map_source"].iloc[0]), fontsize=9)
             for navigator, (color, dashes) in look.items():
                 ratio, share = arrived_within(here[here["navigator"] == navigator])
                 ends = np.r_[limits[0], ratio, limits[1]]

@@ -62,7 +62,8 @@ def _figure(trials: pd.DataFrame) -> Figure:
                 color=[_COLORS[outcome] for outcome in OUTCOMES],
             )
             failed = ", ".join(f"{outcome} {len(times[outcome])}" for outcome in OUTCOMES[1:])
-            panel.set_title(f"{label(name)}\n{failed} of {len(here)}", fontsize=9)
+            title = label(name, here["map_source"].iloc[0])
+            panel.set_title(f"{title}\n{failed} of {len(here)}", fontsize=8)
             sentences.append(
                 f"{label(name)}: {span(everything.min(), everything.max())} ms, median "
                 f"{number(float(np.median(everything)))} ms, {failed} of {len(here)}."
