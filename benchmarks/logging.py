@@ -30,8 +30,8 @@ KINDS = (
 )
 """Trials with so many epochs: map, least, most."""
 
-BATCH = 50
-"""Trials timed together: the log is flushed every hundred messages, some twenty trials."""
+BATCH = 100
+"""Trials timed together: the log is flushed every four hundred messages, some hundred trials."""
 
 
 class Batch:
@@ -47,7 +47,7 @@ class Batch:
                 self.trials.append(TimedPlan(number, plan, 0.0))
             number += 1
         run = Run("logging", "ga1", problem, PlanTask(planner), [], 0, BATCH, "", folder, False)
-        self.recorder = mcap.Recorder(flush_every=100)
+        self.recorder = mcap.Recorder(flush_every=400)
         self.recorder.open(folder)
         self.recorder.record(run_started(run, shortest_path(problem)))
 

@@ -197,11 +197,22 @@ class GridMap:
         (n, 2) float64
             Metres in the frame that `origin` is given in (REP 103, REP 105).
         """
-        right = (fields[:, 0] + 0.5) * self.resolution
-        up = (self.rows - fields[:, 1] - 0.5) * self.resolution
+        scale, offset = self._metric
+        metres: NDArray[np.float64] = fields * scale
+        metres += offset
         x, y, yaw = self.origin
+        if yaw == 0.0:  # the offset has the origin in it
+            return metres
         cos, sin = math.cos(yaw), math.sin(yaw)
-        metres = np.empty(fields.shape)
+        right, up = metres[:, 0].copy(), metres[:, 1].copy()
         metres[:, 0] = x + right * cos - up * sin
         metres[:, 1] = y + right * sin + up * cos
         return metres
+
+    @cached_property
+    def _metric(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Scale and offset of metres: half a field in from the left, y up from the bottom."""
+        x, y, yaw = self.origin
+        offset = np.array([0.5, self.rows - 0.5]) * self.resolution
+        corner = np.array([x, y] if yaw == 0.0 else [0.0, 0.0])
+        return np.array([self.resolution, -self.resolution]), offset + corner
