@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 
 from gapath._jit import kernel
 from gapath.grid import OBSTACLE
-from gapath.kernels.bspline import Basis
-from gapath.kernels.evolution import EvolutionResult, EvolutionSettings
 from gapath.kernels.fitness import KEY_BITS, ONE_OBSTACLE
 from gapath.kernels.population import Ends
 from gapath.rng import Stream, fill, happens, high, low
@@ -30,14 +28,13 @@ def initialise(
     population: NDArray[np.int32],
     ends: Ends,
     sides: tuple[int, int],
-    settings: EvolutionSettings,
+    settings: np.void,
     words: NDArray[np.uint64],
 ) -> None:
     """Fill the initial population, one third each in three ways (Sec. 3.3)."""
     size, genes = population.shape
-    initial = settings.initial
     start, target = (ends.start_x, ends.start_y), (ends.target_x, ends.target_y)
-    reach = initial.neighbourhood
+    reach = settings["neighbourhood"]
     w = 0
     for i in range(size):
         population[i, 0], population[i, 1] = start
@@ -47,13 +44,13 @@ def initialise(
             if part == 0:
                 line = start[axis] + (g // 2) * (target[axis] - start[axis]) / (genes // 2 - 1)
                 gene = np.int64(np.floor(line + 0.5 + TIE))
-                if happens(words[w], initial.line_jitter_threshold):
-                    gene += low(words[w], 2 * initial.line_jitter + 1) - initial.line_jitter
+                if happens(words[w], settings["line_jitter_threshold"]):
+                    gene += low(words[w], 2 * settings["line_jitter"] + 1) - settings["line_jitter"]
             elif part == 1:
                 gene = start[axis] + high(words[w], 2 * reach + 1) - reach
             else:
-                gene = initial.margin + high(words[w], sides[axis] - 2 * initial.margin)
-            population[i, g] = clip(gene, sides[axis], settings.clip_to_map)
+                gene = settings["margin"] + high(words[w], sides[axis] - 2 * settings["margin"])
+            population[i, g] = clip(gene, sides[axis], settings["clip_to_map"])
             w += 1
 
 
@@ -91,39 +88,41 @@ def fitness(
 @kernel
 def evolve(
     table: NDArray[np.int32],
-    ends: Ends,
+    ends: tuple[int, int, int, int],
     rule: int,
-    settings: EvolutionSettings,
-    basis: Basis,
+    settings: NDArray[np.void],
+    weights: NDArray[np.float64],
+    rounding: NDArray[np.float64],
     stream: Stream,
-    history: EvolutionResult,
+    history: NDArray[np.void],
+    chromosomes: NDArray[np.int32],
 ) -> int:
     """Run the genetic algorithm; arguments as `gapath.kernels.evolution.evolve`, rule ALLOW."""
     rows, cols = table.shape
-    size, genes = settings.population, 2 * settings.control_points
+    setting = settings[0]
+    size, genes = setting["population"], chromosomes.shape[1]
     inner, selected = genes - 4, size // 4
-    share = settings.mixing[0] / settings.mixing[1]
+    share = setting["mixing_numerator"] / setting["mixing_denominator"]
     half = min(rows, cols) // 2
-    matrix = basis.numerators / basis.denominators.reshape(-1, 1)
 
     population = np.empty((size, genes), dtype=np.int32)
     keys = np.empty(size, dtype=np.int64)
     words = np.empty(size * inner, dtype=np.uint64)
     fill(stream, words)
-    initialise(population, ends, (cols, rows), settings, words)
+    initialise(population, Ends(*ends), (cols, rows), setting, words)
     words = np.empty((size - selected) * (inner + 1), dtype=np.uint64)
     epoch = 0
     while True:
         for i in range(size):
-            keys[i] = fitness(table, population[i], matrix)
+            keys[i] = fitness(table, population[i], weights)
         order = np.argsort(keys, kind="mergesort")  # stable: ties go to the lower index
-        history.keys[epoch] = keys[order[0]]
-        history.obstacle_sums[epoch] = (keys >> KEY_BITS).sum()
-        history.cost_sums[epoch] = (keys & (ONE_OBSTACLE - 1)).sum()
-        history.chromosomes[epoch] = population[order[0]]
+        history["key"][epoch] = keys[order[0]]
+        history["obstacle_sum"][epoch] = (keys >> KEY_BITS).sum()
+        history["cost_sum"][epoch] = (keys & (ONE_OBSTACLE - 1)).sum()
+        chromosomes[epoch] = population[order[0]]
         epoch += 1
         feasible = keys[order[0]] < ONE_OBSTACLE
-        if (feasible and epoch >= settings.min_epochs) or epoch == settings.max_epochs:
+        if (feasible and epoch >= setting["min_epochs"]) or epoch == setting["max_epochs"]:
             break
         following = np.empty_like(population)
         following[:selected] = population[order[:selected]]
@@ -138,10 +137,10 @@ def evolve(
                 mixed = share * population[a, g] + (1.0 - share) * population[b, g]
                 gene = np.int64(np.floor(mixed + 0.5))
                 if 2 <= g < genes - 2:
-                    if happens(words[w], settings.mutation_threshold):
+                    if happens(words[w], setting["mutation_threshold"]):
                         gene += low(words[w], 2 * half + 1) - half
                     w += 1
-                    gene = clip(gene, (cols, rows)[g % 2], settings.clip_to_map)
+                    gene = clip(gene, (cols, rows)[g % 2], setting["clip_to_map"])
                 following[i, g] = gene
         population = following
     return epoch

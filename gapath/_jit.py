@@ -1,4 +1,4 @@
-"""The only import of numba: the `kernel` decorator and its cache folder.
+"""The only import of numba: the `kernel` decorator, its cache folder, and what vectors need.
 
 numba's own cache does not notice that a function called from another file was edited,
 so the folder is keyed by a hash of every file that holds kernels. Where no folder can
@@ -14,6 +14,8 @@ from pathlib import Path
 from typing import ParamSpec, TypeVar
 
 import numba
+from numba import types as types
+from numba.extending import intrinsic as intrinsic
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -47,6 +49,13 @@ def _cache_folder() -> str | None:
 
 _FOLDER = _cache_folder()
 
+JIT: bool = not numba.config.DISABLE_JIT  # type: ignore[attr-defined]
+"""Whether kernels are compiled; `intrinsic` gives nothing that Python could run."""
+
+# A division by zero is nobody's way of control: without its test more loops become vectors.
+# Nothing in a kernel touches Python's objects, so other threads may run beside it.
+_OPTIONS = {"error_model": "numpy", "nogil": True}
+
 
 def kernel(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a free function on arrays and NamedTuples to machine code.
@@ -64,11 +73,11 @@ def kernel(function: Callable[P, R]) -> Callable[P, R]:
         The compiled function, with the same signature.
     """
     if _FOLDER is None:
-        return numba.njit(function)  # type: ignore[no-any-return]
+        return numba.njit(function, **_OPTIONS)  # type: ignore[no-any-return]
     # numba reads CACHE_DIR while it decorates; other people's kernels keep their own.
     before = numba.config.CACHE_DIR  # type: ignore[attr-defined]
     numba.config.CACHE_DIR = _FOLDER  # type: ignore[attr-defined]
     try:
-        return numba.njit(function, cache=True)  # type: ignore[no-any-return]
+        return numba.njit(function, cache=True, **_OPTIONS)  # type: ignore[no-any-return]
     finally:
         numba.config.CACHE_DIR = before  # type: ignore[attr-defined]

@@ -118,7 +118,8 @@ class Evolution(NamedTuple):
     """What the genes mean, e.g. "control_points": x1, y1, ..., xk, yk."""
 
 
-def _no_path() -> NDArray[np.int32]:
+def no_path() -> NDArray[np.int32]:
+    """Give the path of no fields."""
     return np.empty((0, 2), dtype=np.int32)
 
 
@@ -146,7 +147,7 @@ class Plan:
     """
 
     status: PlanStatus
-    path: NDArray[np.int32] = field(default_factory=_no_path, repr=False)
+    path: NDArray[np.int32] = field(default_factory=no_path, repr=False)
     cost: float = math.inf
     epochs: int = 0
     evaluations: int = 0

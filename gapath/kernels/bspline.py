@@ -1,8 +1,9 @@
 """Clamped B-splines of degree 2 with equidistant knots, in exact arithmetic (KG18 Sec. 3.1).
 
-Every way point is a fixed rational combination of the control points, so the basis
-functions are computed once, as fractions; the kernel only sums integers. No rounding can
-then differ between two machines.
+Every way point is a fixed rational combination of the control points, with a small common
+denominator d, so the basis functions are computed once, as fractions. Before it is rounded
+half up a coordinate is a multiple of 1 / (2 d). Adding 1 / (4 d) moves it that far from every
+integer, much farther than floating-point sums err: its floor is exact on every machine.
 """
 
 import math
@@ -14,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath._jit import kernel
+from gapath.kernels.raster import polyline
 
 DEGREE = 2
 
@@ -21,10 +23,10 @@ DEGREE = 2
 class Basis(NamedTuple):
     """Basis functions at the parameters of the way points (w way points, k control points)."""
 
-    numerators: NDArray[np.float64]
-    """(w, k) integers, as floats so that sums and quotients need no conversion."""
-    denominators: NDArray[np.float64]
-    """(w,) positive integers: N_i(u_j) = numerators[j, i] / denominators[j]."""
+    weights: NDArray[np.float64]
+    """(w, k) N_i(u_j); each row sums to 1."""
+    rounding: NDArray[np.float64]
+    """(w,) what to add before the floor: 1/2, and 1 / (4 d) with the row's denominator d."""
 
 
 def knots(control_points: int) -> list[Fraction]:
@@ -100,18 +102,15 @@ def basis(control_points: int, way_points: int, per_span: bool) -> Basis:
     pieces = spans * (way_points - 1)
     rows = [basis_functions(control_points, Fraction(j, pieces)) for j in range(pieces + 1)]
     denominators = [math.lcm(*(value.denominator for value in row)) for row in rows]
-    numerators = [
-        [int(value * denominator) for value in row]
-        for row, denominator in zip(rows, denominators, strict=True)
-    ]
-    return Basis(np.array(numerators, dtype=np.float64), np.array(denominators, dtype=np.float64))
+    return Basis(
+        np.array([[float(value) for value in row] for row in rows]),
+        np.array([0.5 + 0.25 / denominator for denominator in denominators]),
+    )
 
 
 @kernel
 def way_point(chromosome: NDArray[np.int32], basis: Basis, j: int, axis: int) -> int:
     """Compute one coordinate of a way point, rounded half up to a field's centre.
-
-    The sum and the floor of the quotient are exact: both are far below 2**53.
 
     Parameters
     ----------
@@ -129,11 +128,10 @@ def way_point(chromosome: NDArray[np.int32], basis: Basis, j: int, axis: int) ->
     int
         floor(B(u_j) + 1/2).
     """
-    total = 0.0
-    for i in range(basis.numerators.shape[1]):
-        total += basis.numerators[j, i] * chromosome[2 * i + axis]
-    denominator = basis.denominators[j]
-    return np.int64(np.floor((2.0 * total + denominator) / (2.0 * denominator)))
+    total = basis.rounding[j]
+    for i in range(basis.weights.shape[1]):
+        total += basis.weights[j, i] * chromosome[2 * i + axis]
+    return np.int64(np.floor(total))
 
 
 @kernel
@@ -152,9 +150,35 @@ def way_points(chromosomes: NDArray[np.int32], basis: Basis) -> NDArray[np.int32
     (n, w, 2) int32
         Way points as (x, y).
     """
-    points = np.empty((chromosomes.shape[0], basis.denominators.shape[0], 2), dtype=np.int32)
+    points = np.empty((chromosomes.shape[0], basis.rounding.shape[0], 2), dtype=np.int32)
     for i in range(points.shape[0]):
         for j in range(points.shape[1]):
             points[i, j, 0] = way_point(chromosomes[i], basis, j, 0)
             points[i, j, 1] = way_point(chromosomes[i], basis, j, 1)
     return points
+
+
+@kernel
+def rasterise(
+    chromosome: NDArray[np.int32], weights: NDArray[np.float64], rounding: NDArray[np.float64]
+) -> NDArray[np.int32]:
+    """Give the fields of a chromosome's path (KG18 Sec. 3.4, step 1).
+
+    Parameters
+    ----------
+    chromosome : (2 k,) int32
+        Control points x1, y1, ..., xk, yk.
+    weights, rounding
+        `Basis`.
+
+    Returns
+    -------
+    (n, 2) int32
+        Fields as (x, y), as `gapath.kernels.raster.polyline` gives them.
+    """
+    basis = Basis(weights, rounding)
+    points = np.empty((rounding.shape[0], 2), dtype=np.int32)
+    for j in range(points.shape[0]):
+        points[j, 0] = way_point(chromosome, basis, j, 0)
+        points[j, 1] = way_point(chromosome, basis, j, 1)
+    return polyline(points)

@@ -1,4 +1,8 @@
-"""KG18's whole evolution in one kernel (Secs 3.3-3.8)."""
+"""KG18's whole evolution in one kernel (Secs 3.3-3.8).
+
+What goes in and out are arrays and plain numbers: to unpack a NamedTuple of as many settings
+takes numba longer than an epoch.
+"""
 
 from typing import NamedTuple
 
@@ -7,42 +11,55 @@ from numpy.typing import NDArray
 
 from gapath._jit import kernel
 from gapath.kernels.bspline import Basis
-from gapath.kernels.fitness import KEY_BITS, ONE_OBSTACLE, fitness
-from gapath.kernels.population import Ends, InitialPopulation, cross, initialise, mutate, rank_best
+from gapath.kernels.evaluation import evaluate, workspace
+from gapath.kernels.fitness import KEY_BITS, ONE_OBSTACLE
+from gapath.kernels.population import (
+    Ends,
+    InitialPopulation,
+    cross,
+    gene_limits,
+    initialise,
+    mutate,
+    rank_best,
+)
 from gapath.rng import Stream, fill, high, low
 
+SETTINGS = np.dtype(
+    [
+        ("population", np.int64),
+        ("min_epochs", np.int64),
+        ("max_epochs", np.int64),
+        ("mixing_numerator", np.int64),
+        ("mixing_denominator", np.int64),
+        ("mutation_threshold", np.uint64),
+        ("clip_to_map", np.bool_),
+        ("line_jitter", np.int64),
+        ("line_jitter_threshold", np.uint64),
+        ("neighbourhood", np.int64),
+        ("margin", np.int64),
+    ]
+)
+"""Settings of the genetic algorithm, as the kernel takes them: an array of one row."""
 
-class EvolutionSettings(NamedTuple):
-    """Settings of the genetic algorithm, as the kernel takes them."""
-
-    population: int
-    control_points: int
-    min_epochs: int
-    max_epochs: int
-    mixing: tuple[int, int]
-    mutation_threshold: np.uint64
-    clip_to_map: bool
-    initial: InitialPopulation
+EPOCHS = np.dtype([("key", np.int64), ("obstacle_sum", np.int64), ("cost_sum", np.int64)])
+"""What happened in an epoch: the best individual's key, obstacle fields and cost (in units of
+1 / SCALE) of the whole population."""
 
 
 class EvolutionResult(NamedTuple):
     """History of an evolution of E epochs; epoch 1 is the initial population."""
 
-    keys: NDArray[np.int64]
-    """(E,) key of the best individual."""
-    obstacle_sums: NDArray[np.int64]
-    """(E,) obstacle fields of the whole population."""
-    cost_sums: NDArray[np.int64]
-    """(E,) cost of the whole population, in units of 1 / SCALE."""
+    epochs: NDArray[np.void]
+    """(E,) `EPOCHS`."""
     chromosomes: NDArray[np.int32]
     """(E, 2 k) the best individual."""
 
 
 def run_evolution(
     table: NDArray[np.int32],
-    ends: Ends,
+    ends: tuple[int, int, int, int],
     rule: int,
-    settings: EvolutionSettings,
+    settings: NDArray[np.void],
     basis: Basis,
     stream: Stream,
 ) -> EvolutionResult:
@@ -50,40 +67,39 @@ def run_evolution(
 
     Parameters
     ----------
-    table, ends, rule, settings, basis, stream
+    table, ends, rule, settings, stream
         As of `evolve`.
+    basis : Basis
+        Basis functions at w way points.
 
     Returns
     -------
     EvolutionResult
         Its last row is the answer.
     """
-    most = settings.max_epochs
-    history = EvolutionResult(
-        np.empty(most, dtype=np.int64),
-        np.empty(most, dtype=np.int64),
-        np.empty(most, dtype=np.int64),
-        np.empty((most, 2 * settings.control_points), dtype=np.int32),
-    )
-    epochs = evolve(table, ends, rule, settings, basis, stream, history)
-    return EvolutionResult(*(part[:epochs] for part in history))
+    most = int(settings["max_epochs"][0])
+    history = np.empty(most, dtype=EPOCHS)
+    chromosomes = np.empty((most, 2 * basis.weights.shape[1]), dtype=np.int32)
+    epochs = evolve(table, ends, rule, settings, *basis, stream, history, chromosomes)
+    return EvolutionResult(history[:epochs], chromosomes[:epochs])
 
 
-def evaluations(settings: EvolutionSettings, epochs: int) -> int:
+def evaluations(population: int, epochs: int) -> int:
     """Count the chromosomes evaluated: the selected quarter, copied, is not evaluated again."""
-    size = settings.population
-    return size + (epochs - 1) * (size - size // 4)
+    return population + (epochs - 1) * (population - population // 4)
 
 
 @kernel
 def evolve(
     table: NDArray[np.int32],
-    ends: Ends,
+    ends: tuple[int, int, int, int],
     rule: int,
-    settings: EvolutionSettings,
-    basis: Basis,
+    settings: NDArray[np.void],
+    weights: NDArray[np.float64],
+    rounding: NDArray[np.float64],
     stream: Stream,
-    history: EvolutionResult,
+    history: NDArray[np.void],
+    chromosomes: NDArray[np.int32],
 ) -> int:
     """Run the genetic algorithm.
 
@@ -94,18 +110,20 @@ def evolve(
     ----------
     table : (rows, cols) int32
         `GridMap.table`.
-    ends : Ends
+    ends : (x, y, x, y)
         Start and target.
     rule : int
         Corner-cutting rule.
-    settings : EvolutionSettings
+    settings : (1,) SETTINGS
         Settings; the population is at least 4.
-    basis : Basis
-        Basis functions at the way points.
+    weights, rounding
+        `gapath.kernels.bspline.Basis`.
     stream : (4,) uint64
         Random stream, advanced in place.
-    history : EvolutionResult
-        Arrays for ``max_epochs`` epochs, overwritten.
+    history : (max_epochs,) EPOCHS
+        Overwritten.
+    chromosomes : (max_epochs, 2 k) int32
+        Overwritten with each epoch's best individual.
 
     Returns
     -------
@@ -113,25 +131,38 @@ def evolve(
         Epochs taken.
     """
     rows, cols = table.shape
-    size, genes = settings.population, 2 * settings.control_points
-    inner = genes - 4
+    setting = settings[0]
+    size, genes = setting["population"], chromosomes.shape[1]
+    mixing = setting["mixing_numerator"], setting["mixing_denominator"]
+    half = min(rows, cols) // 2
     selected = size // 4
+    basis = Basis(weights, rounding)
 
-    population = np.empty((size, genes), dtype=np.int32)
-    offspring = np.empty((size, genes), dtype=np.int32)
+    padded = (genes + 15) // 16 * 16  # whole vectors
+    population = np.zeros((size, padded), dtype=np.int32)
+    offspring = np.zeros((size, padded), dtype=np.int32)
+    limits = np.empty((2, padded), dtype=np.int32)
     keys = np.empty(size, dtype=np.int64)
     offspring_keys = np.empty(size, dtype=np.int64)
     best = np.empty(selected, dtype=np.int64)
-    words = np.empty(size * (inner + 1), dtype=np.uint64)
+    words = np.zeros(padded, dtype=np.uint64)
+    drawn = words[1 : genes - 2]  # one for the parents, one for each inner gene
+    memory = workspace(basis, size)
 
-    first = words[: size * inner]
+    initial = InitialPopulation(
+        setting["line_jitter"],
+        setting["line_jitter_threshold"],
+        setting["neighbourhood"],
+        setting["margin"],
+    )
+    gene_limits(limits, Ends(*ends), genes, rows, cols, setting["clip_to_map"])
+    first = np.empty(size * (genes - 4), dtype=np.uint64)
     fill(stream, first)
-    initialise(population, ends, rows, cols, settings.clip_to_map, settings.initial, first)
+    initialise(population[:, :genes], Ends(*ends), rows, cols, limits, initial, first)
     evaluated = 0  # individuals before this one carry their key over
     epoch = 0
     while True:
-        for i in range(evaluated, size):
-            keys[i] = fitness(table, population[i], basis, rule)
+        evaluate(table, population[evaluated:], basis, rule, keys[evaluated:], memory)
         rank_best(keys, best)
 
         obstacle_sum = np.int64(0)
@@ -139,37 +170,28 @@ def evolve(
         for i in range(size):
             obstacle_sum += keys[i] >> KEY_BITS
             cost_sum += keys[i] & (ONE_OBSTACLE - 1)
-        history.keys[epoch] = keys[best[0]]
-        history.obstacle_sums[epoch] = obstacle_sum
-        history.cost_sums[epoch] = cost_sum
-        history.chromosomes[epoch] = population[best[0]]
+        now = history[epoch]
+        now["key"] = keys[best[0]]
+        now["obstacle_sum"] = obstacle_sum
+        now["cost_sum"] = cost_sum
+        chromosomes[epoch] = population[best[0], :genes]
         epoch += 1
 
         # KG18 Sec. 3.8: a feasible path ends it, never before min_epochs
-        feasible = history.keys[epoch - 1] < ONE_OBSTACLE
-        if (feasible and epoch >= settings.min_epochs) or epoch == settings.max_epochs:
+        feasible = keys[best[0]] < ONE_OBSTACLE
+        if (feasible and epoch >= setting["min_epochs"]) or epoch == setting["max_epochs"]:
             break
 
         for i in range(selected):
             offspring[i] = population[best[i]]
             offspring_keys[i] = keys[best[i]]
-        draws = words[: (size - selected) * (inner + 1)]
-        fill(stream, draws)
-        w = 0
         for i in range(selected, size):
-            a, b = best[high(draws[w], selected)], best[low(draws[w], selected)]
+            fill(stream, drawn)
+            a, b = best[high(drawn[0], selected)], best[low(drawn[0], selected)]
             if keys[a] >= keys[b]:  # on equal fitness B dominates, eq. (6)
                 a, b = b, a
-            cross(population[a], population[b], offspring[i], settings.mixing)
-            mutate(
-                offspring[i],
-                rows,
-                cols,
-                settings.clip_to_map,
-                settings.mutation_threshold,
-                draws[w + 1 : w + 1 + inner],
-            )
-            w += 1 + inner
+            cross(population[a], population[b], offspring[i], mixing)
+            mutate(offspring[i], limits, half, setting["mutation_threshold"], words)
         population, offspring = offspring, population
         keys, offspring_keys = offspring_keys, keys
         evaluated = selected
@@ -179,13 +201,13 @@ def evolve(
 
 @kernel
 def fitness_history(
-    result: EvolutionResult, population: int, vln: float, scale: int
+    history: NDArray[np.void], population: int, vln: float, scale: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Give the paper's numbers: eq. (5) of the best individual, and its mean.
 
     Parameters
     ----------
-    result : EvolutionResult
+    history : (E,) EPOCHS
         History of E epochs.
     population : int
         Individuals.
@@ -199,10 +221,10 @@ def fitness_history(
     best, mean : (E,) float64
         Epoch by epoch.
     """
-    best = np.empty(result.keys.shape[0])
-    mean = np.empty(result.keys.shape[0])
+    best = np.empty(history.shape[0])
+    mean = np.empty(history.shape[0])
     for i in range(best.shape[0]):
-        key = result.keys[i]
-        best[i] = (key >> KEY_BITS) * vln + (key & (ONE_OBSTACLE - 1)) / scale
-        mean[i] = (result.obstacle_sums[i] * vln + result.cost_sums[i] / scale) / population
+        epoch = history[i]
+        best[i] = (epoch["key"] >> KEY_BITS) * vln + (epoch["key"] & (ONE_OBSTACLE - 1)) / scale
+        mean[i] = (epoch["obstacle_sum"] * vln + epoch["cost_sum"] / scale) / population
     return best, mean

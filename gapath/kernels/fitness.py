@@ -92,14 +92,14 @@ def steps_inside(position: int, slope_: int, side: int, n: int) -> tuple[int, in
         Steps i with 1 <= first <= i <= last <= n; none if first > last.
     """
     limit = (side << SHIFT) - 1
+    end = position + n * slope_
     if slope_ < 0:  # the mirror image: the line runs from the far side
-        position, slope_ = limit - position, -slope_
+        position, end, slope_ = limit - position, limit - end, -slope_
     first, last = 1, n
-    if slope_ == 0:
-        return (first, last) if 0 <= position <= limit else (1, 0)
     if position < 0:
-        first = max(first, (-position + slope_ - 1) // slope_)
-    last = min(last, (limit - position) // slope_)
+        first = (-position + slope_ - 1) // slope_ if end >= 0 else n + 1
+    if end > limit:
+        last = (limit - position) // slope_ if position <= limit else 0
     return first, last
 
 
@@ -209,7 +209,7 @@ def fitness(
     start = entry(table, x0, y0)
     obstacles = start >> OBSTACLE_BITS
     cost = start & WEIGHT_MASK
-    for j in range(1, basis.denominators.shape[0]):
+    for j in range(1, basis.rounding.shape[0]):
         x1 = way_point(chromosome, basis, j, 0)
         y1 = way_point(chromosome, basis, j, 1)
         line = line_key(table, x0, y0, x1, y1, rule)

@@ -41,12 +41,42 @@ def clip(gene: int, side: int, clip_to_map: bool) -> int:
 
 
 @kernel
+def gene_limits(
+    limits: NDArray[np.int32], ends: Ends, genes: int, rows: int, cols: int, clip_to_map: bool
+) -> None:
+    """Give the range of every gene; start and target have no choice.
+
+    Parameters
+    ----------
+    limits : (2, n) int32
+        Overwritten with the least and the greatest value of each gene; n >= 2 k.
+    ends : Ends
+        First and last control point.
+    genes : int
+        2 k; what follows stays 0.
+    rows, cols : int
+        Size of the map.
+    clip_to_map : bool
+        Keep genes on the map.
+    """
+    limits[:] = 0
+    for g in range(0, genes, 2):
+        for bound in range(2):
+            far = (2 * bound - 1) * COORDINATE_LIMIT
+            limits[bound, g] = clip(far, cols, clip_to_map)
+            limits[bound, g + 1] = clip(far, rows, clip_to_map)
+    for bound in range(2):
+        limits[bound, 0], limits[bound, 1] = ends.start_x, ends.start_y
+        limits[bound, genes - 2], limits[bound, genes - 1] = ends.target_x, ends.target_y
+
+
+@kernel
 def initialise(
     population: NDArray[np.int32],
     ends: Ends,
     rows: int,
     cols: int,
-    clip_to_map: bool,
+    limits: NDArray[np.int32],
     settings: InitialPopulation,
     words: NDArray[np.uint64],
 ) -> None:
@@ -64,8 +94,8 @@ def initialise(
         First and last control point of every individual.
     rows, cols : int
         Size of the map.
-    clip_to_map : bool
-        Move genes outside the map to its border.
+    limits : (2, n) int32
+        `gene_limits`.
     settings : InitialPopulation
         Ranges and probability.
     words : (P * (2 k - 4),) uint64
@@ -76,29 +106,30 @@ def initialise(
     start = (ends.start_x, ends.start_y)
     target = (ends.target_x, ends.target_y)
     sides = (cols, rows)
+    line = np.empty(genes, dtype=np.int64)
+    for g in range(genes):
+        axis = g % 2
+        d = target[axis] - start[axis]
+        line[g] = start[axis] + (2 * (g // 2) * d + segments) // (2 * segments)
+    reach, jitter = settings.neighbourhood, settings.line_jitter
     w = 0
     for i in range(size):
         part = 3 * i // size
-        for axis in range(2):
-            population[i, axis] = start[axis]
-            population[i, genes - 2 + axis] = target[axis]
+        population[i] = line
         for g in range(2, genes - 2):
             axis = g % 2
-            side = sides[axis]
             word = words[w]
             w += 1
             if part == 0:
-                d = target[axis] - start[axis]
-                gene = start[axis] + (2 * (g // 2) * d + segments) // (2 * segments)
+                gene = line[g]
                 if happens(word, settings.line_jitter_threshold):
-                    gene += low(word, 2 * settings.line_jitter + 1) - settings.line_jitter
+                    gene += low(word, 2 * jitter + 1) - jitter
             elif part == 1:
-                reach = settings.neighbourhood
                 gene = start[axis] + high(word, 2 * reach + 1) - reach
             else:
-                margin = min(settings.margin, (side - 1) // 2)
-                gene = margin + high(word, side - 2 * margin)
-            population[i, g] = clip(gene, side, clip_to_map)
+                margin = min(settings.margin, (sides[axis] - 1) // 2)
+                gene = margin + high(word, sides[axis] - 2 * margin)
+            population[i, g] = min(max(gene, np.int64(limits[0, g])), np.int64(limits[1, g]))
 
 
 @kernel
@@ -135,50 +166,50 @@ def cross(
 ) -> None:
     """Arithmetical crossover (KG18 eq. (6)), rounded half up.
 
+    A multiple of 1 / (2 d) is lifted by 1 / (4 d) before its floor is taken, as the way points
+    are (`gapath.kernels.bspline`): exact, and faster than a division of integers.
+
     Parameters
     ----------
-    fitter, other : (2 k,) int32
+    fitter, other : (n,) int32
         The parents.
-    child : (2 k,) int32
+    child : (n,) int32
         Overwritten.
     mixing : (int, int)
-        The coefficient D as numerator and denominator.
+        The coefficient D as numerator and denominator d.
     """
     numerator, denominator = mixing
+    share, rest = numerator / denominator, (denominator - numerator) / denominator
+    rounding = 0.5 + 0.25 / denominator
     for g in range(child.shape[0]):
-        total = numerator * np.int64(fitter[g]) + (denominator - numerator) * np.int64(other[g])
-        child[g] = (2 * total + denominator) // (2 * denominator)
+        child[g] = np.int32(np.floor(share * fitter[g] + rest * other[g] + rounding))
 
 
 @kernel
 def mutate(
     child: NDArray[np.int32],
-    rows: int,
-    cols: int,
-    clip_to_map: bool,
+    limits: NDArray[np.int32],
+    half: int,
     threshold: np.uint64,
     words: NDArray[np.uint64],
 ) -> None:
-    """Add to each inner gene, with a probability, an integer in [-h/2, h/2] (KG18 Sec. 3.7).
+    """Add to each gene, with a probability, an integer in [-h/2, h/2] (KG18 Sec. 3.7).
 
     Parameters
     ----------
-    child : (2 k,) int32
-        Changed in place; the first two and last two genes stay.
-    rows, cols : int
-        Size of the map; h is the smaller side.
-    clip_to_map : bool
-        Move genes outside the map to its border.
+    child : (n,) int32
+        Changed in place.
+    limits : (2, n) int32
+        `gene_limits`: genes of start and target, and those outside the map, move back.
+    half : int
+        h / 2, rounded down; h is the smaller side of the map.
     threshold : uint64
         The probability as `gapath.rng.probability_threshold` gives it.
-    words : (2 k - 4,) uint64
-        Random words, one for each inner gene.
+    words : (n,) uint64
+        Random words, one for each gene.
     """
-    half = min(rows, cols) // 2
-    sides = (cols, rows)
-    for g in range(2, child.shape[0] - 2):
-        word = words[g - 2]
-        gene = np.int64(child[g])
-        if happens(word, threshold):
-            gene += low(word, 2 * half + 1) - half
-        child[g] = clip(gene, sides[g % 2], clip_to_map)
+    least, greatest = limits[0], limits[1]
+    for g in range(child.shape[0]):
+        change = low(words[g], 2 * half + 1) - half if happens(words[g], threshold) else 0
+        gene = np.int64(child[g]) + change
+        child[g] = min(max(gene, np.int64(least[g])), np.int64(greatest[g]))

@@ -13,18 +13,16 @@ import numpy as np
 
 from gapath.errors import require
 from gapath.grid import SCALE
-from gapath.kernels.bspline import Basis, basis, way_points
+from gapath.kernels.bspline import Basis, basis, rasterise, way_points
 from gapath.kernels.evolution import (
+    SETTINGS,
     EvolutionResult,
-    EvolutionSettings,
     evaluations,
     fitness_history,
     run_evolution,
 )
 from gapath.kernels.fitness import KEY_BITS, ONE_OBSTACLE
-from gapath.kernels.population import Ends, InitialPopulation
-from gapath.kernels.raster import polyline
-from gapath.problem import Evolution, Plan, PlanStatus, Query
+from gapath.problem import Evolution, Plan, PlanStatus, Query, no_path
 from gapath.rng import Stream, probability_threshold
 
 MAX_BYTES = 1 << 30
@@ -99,7 +97,7 @@ class Planner:
         for name in ("line_jitter", "neighbourhood", "margin"):
             check(name, 0 <= getattr(self, name) <= 65536, "an integer from 0 to 65536")
         check("vln", 1 <= self.vln < float("inf"), "a finite number above every weight")
-        genes, points = 2 * self.control_points, len(self._basis.denominators)
+        genes, points = 2 * self.control_points, len(self._basis.rounding)
         needed = 4 * genes * (2 * self.population + self.max_epochs)
         needed += 8 * (genes * self.population + (5 + points) * self.max_epochs)
         require(
@@ -114,25 +112,19 @@ class Planner:
         return basis(self.control_points, self.way_points, self.sampling == "span")
 
     @cached_property
-    def _settings(self) -> EvolutionSettings:
+    def _settings(self) -> np.ndarray[tuple[int, ...], np.dtype[np.void]]:
         mixing = Fraction(str(self.mixing))  # 0.8 is meant as 4/5, not as its nearest double
         if mixing.denominator > 10**6:
             mixing = mixing.limit_denominator(10**6)
-        return EvolutionSettings(
-            self.population,
-            self.control_points,
-            self.min_epochs,
-            self.max_epochs,
-            (mixing.numerator, mixing.denominator),
-            probability_threshold(self.mutation_probability),
-            self.clip_to_map,
-            InitialPopulation(
-                self.line_jitter,
-                probability_threshold(self.line_jitter_probability),
-                self.neighbourhood,
-                self.margin,
-            ),
-        )
+        settings = np.zeros(1, dtype=SETTINGS)
+        for name in SETTINGS.names or ():
+            if hasattr(self, name):
+                settings[name] = getattr(self, name)
+        settings["mixing_numerator"] = mixing.numerator
+        settings["mixing_denominator"] = mixing.denominator
+        settings["mutation_threshold"] = probability_threshold(self.mutation_probability)
+        settings["line_jitter_threshold"] = probability_threshold(self.line_jitter_probability)
+        return settings
 
     def plan(self, problem: Query, stream: Stream) -> Plan:
         """Run the genetic algorithm once.
@@ -152,28 +144,25 @@ class Planner:
         grid = problem.map
         result = run_evolution(
             grid.table,
-            Ends(*problem.start, *problem.target),
+            (*problem.start, *problem.target),
             int(problem.corner_cutting),
             self._settings,
             self._basis,
             stream,
         )
-        key = int(result.keys[-1])
+        key = int(result.epochs["key"][-1])
         found = key < ONE_OBSTACLE
         return Plan(
             PlanStatus.FOUND if found else PlanStatus.NOT_FOUND,
-            path=self._path(result) if found else np.empty((0, 2), dtype=np.int32),
+            path=rasterise(result.chromosomes[-1], *self._basis) if found else no_path(),
             cost=(key >> KEY_BITS) * self.vln + (key & (ONE_OBSTACLE - 1)) / SCALE,
-            epochs=len(result.keys),
-            evaluations=evaluations(self._settings, len(result.keys)),
+            epochs=len(result.epochs),
+            evaluations=evaluations(self.population, len(result.epochs)),
             trace=partial(self._evolution, result),
         )
 
-    def _path(self, result: EvolutionResult) -> np.ndarray[tuple[int, ...], np.dtype[np.int32]]:
-        return polyline(way_points(result.chromosomes[-1:], self._basis)[0])
-
     def _evolution(self, result: EvolutionResult) -> Evolution:
-        best, mean = fitness_history(result, self.population, self.vln, SCALE)
+        best, mean = fitness_history(result.epochs, self.population, self.vln, SCALE)
         return Evolution(
             best=best,
             mean=mean,

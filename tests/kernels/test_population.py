@@ -9,13 +9,22 @@ from gapath.kernels.population import (
     Ends,
     InitialPopulation,
     cross,
+    gene_limits,
     initialise,
     mutate,
     rank_best,
 )
+from gapath.kernels.raster import COORDINATE_LIMIT
 from gapath.rng import fill, probability_threshold, stream
 
 ROWS, COLS = 50, 100
+ENDS = Ends(10, 24, 90, 30)
+
+
+def limits(genes, clip_to_map=False):
+    found = np.empty((2, genes), dtype=np.int32)
+    gene_limits(found, ENDS, genes, ROWS, COLS, clip_to_map)
+    return found
 
 
 def words(n, seed=0):
@@ -27,8 +36,8 @@ def words(n, seed=0):
 def initial(size=300, k=5, jitter=0.5, margin=4):
     population = np.empty((size, 2 * k), dtype=np.int32)
     settings = InitialPopulation(12, probability_threshold(jitter), 7, margin)
-    ends = Ends(10, 24, 90, 30)
-    initialise(population, ends, ROWS, COLS, False, settings, words(size * (2 * k - 4)))
+    drawn = words(size * (2 * k - 4))
+    initialise(population, ENDS, ROWS, COLS, limits(2 * k), settings, drawn)
     return population.reshape(size, k, 2)
 
 
@@ -77,22 +86,33 @@ def test_crossover_by_hand(fitter, other, child):
     assert result[0] == child
 
 
+def test_start_and_target_have_no_choice():
+    least, greatest = limits(8, clip_to_map=True)
+    assert least.tolist() == [10, 24, 0, 0, 0, 0, 90, 30]
+    assert greatest.tolist() == [10, 24, 99, 49, 99, 49, 90, 30]
+    least, greatest = limits(8)
+    assert (least[2:6] == -COORDINATE_LIMIT).all()
+    assert (greatest[2:6] == COORDINATE_LIMIT).all()
+
+
 def test_mutation_changes_inner_genes_by_at_most_half_the_smaller_side():
-    child = np.zeros((20_000, 8), dtype=np.int32)
-    drawn = words(child.shape[0] * 4).reshape(-1, 4)
+    middle = np.array([10, 24, 50, 25, 50, 25, 90, 30], dtype=np.int32)
+    child = np.tile(middle, (20_000, 1))
+    drawn = words(child.size).reshape(child.shape)
     for genes, row in zip(child, drawn, strict=True):
-        mutate(genes, ROWS, COLS, False, probability_threshold(0.4), row)
-    assert not child[:, :2].any()
-    assert not child[:, -2:].any()
-    inner = child[:, 2:-2]
+        mutate(genes, limits(8), ROWS // 2, probability_threshold(0.4), row)
+    change = child - middle
+    assert not change[:, :2].any()
+    assert not change[:, -2:].any()
+    inner = change[:, 2:-2]
     assert (inner.min(), inner.max()) == (-25, 25)
     assert (inner != 0).mean() == pytest.approx(0.4 * 50 / 51, abs=0.01)
     assert inner.mean() == pytest.approx(0, abs=0.2)
 
 
 def test_clipping_moves_genes_to_the_border():
-    child = np.array([0, 0, 99, 49, 0, 0, 5, 5], dtype=np.int32)
+    child = np.array([10, 24, 99, 49, 0, 0, 90, 30], dtype=np.int32)
     for seed in range(50):
-        mutate(child, ROWS, COLS, True, probability_threshold(1.0), words(4, seed))
+        mutate(child, limits(8, True), ROWS // 2, probability_threshold(1.0), words(8, seed))
         x, y = child[2:-2:2], child[3:-2:2]
         assert (x >= 0).all() and (x < COLS).all() and (y >= 0).all() and (y < ROWS).all()
