@@ -331,8 +331,9 @@ def drive_events(driven: Drive, cols: int, seed: int, trial: int, step: int) -> 
                 yield PathsChanged(now, trial, new_path, new_past)
             path, past = new_path, new_past
         fields = np.stack([frame.news % cols, frame.news // cols], axis=1).astype(np.int32)
+        entries = frame.entries.astype(np.int32)
         yield Stepped(
-            now, trial, frame.place, frame.heading, int(mode), fields, frame.entries, frame.seconds
+            now, trial, frame.place, frame.heading, int(mode), fields, entries, frame.seconds
         )
     steps = len(driven.frames) - 1
     yield DriveFinished(step + steps, trial, int(driven.outcome), steps)

@@ -69,7 +69,7 @@ class Frame(NamedTuple):
     news: NDArray[np.int64]
     """(n,) flat indices of the fields that it saw for the first time or changed; in the first
     frame also of the obstacles that it knew before."""
-    entries: NDArray[np.int32]
+    entries: NDArray[np.int64]
     """(n,) their table entries."""
     seconds: float
     """Wall time of the step."""
@@ -139,13 +139,14 @@ def drive(
     heading = int(heading_of(target[0] - start[0], target[1] - start[1]))
 
     begin = last = time.perf_counter()
-    news = known.look(world.table, place, heading, sensor.range, sensor.occlusion)
+    news, entries = known.look(world.table, place, heading, sensor.range, sensor.occlusion)
     query = Query(known, start, target, problem.corner_cutting)
     state = navigator.begin(query)
     now = time.perf_counter()
     if before is not None:  # the first frame tells all that is known
         news = np.union1d(np.flatnonzero(before.obstacles), news)
-    frames = [Frame(place, heading, None, news, known.table.ravel()[news], now - last)]
+        entries = known.table.ravel()[news].astype(np.int64)
+    frames = [Frame(place, heading, None, news, entries, now - last)]
     outcome = Outcome.OVERRAN
     for step in range(step_limit + 1):
         if place == target:
@@ -167,7 +168,7 @@ def drive(
         dx, dy = decision.place[0] - place[0], decision.place[1] - place[1]
         if dx or dy:
             heading = HEADINGS[dx, dy]
-        news = known.look(world.table, place, heading, sensor.range, sensor.occlusion)
+        news, entries = known.look(world.table, place, heading, sensor.range, sensor.occlusion)
         u, v = decision.place
         # the sensor has shown what blocks the step: the next decision knows it
         blocked = world.table[v, u] >= OBSTACLE or (
@@ -178,7 +179,6 @@ def drive(
             query = Query(known, place, target, query.corner_cutting)
         else:
             state = decision.stood
-        entries = known.table.ravel()[news]
         now = time.perf_counter()
         frames.append(Frame(place, heading, decision, news, entries, now - last))
     return Drive(outcome, frames, time.perf_counter() - begin)

@@ -40,13 +40,11 @@ class KnownMap:
             self.table[y, x] = world.table[y, x]
             self.seen[y, x] = True
         self._ends = (start, target)
-        self._least = unknown
+        self._least = np.array([unknown], dtype=np.int64)
         # A start lighter than all other fields spoils their weight as a bound only for fields
         # from which a straightest way to the target leads over it.
         light = int(world.table[start[1], start[0]]) < unknown
         self._start_may_shorten = light and _lies_between(start, target, self.rows, self.cols)
-        self._flat = self.table.ravel()
-        self._news = np.empty(0, dtype=np.int64)
 
     @property
     def rows(self) -> int:
@@ -68,12 +66,12 @@ class KnownMap:
 
     def least_weight(self, start: Field, target: Field) -> int:
         """Give a table entry that bounds the weights of fields between start and target."""
-        return 0 if self._start_may_shorten and start not in self._ends else self._least
+        return 0 if self._start_may_shorten and start not in self._ends else int(self._least[0])
 
     def look(
         self, world: Table, place: Field, heading: int, layers: int, occlusion: bool
-    ) -> NDArray[np.int64]:
-        """Take over what the robot sees.
+    ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Take over what the robot sees, in one call of a kernel.
 
         Parameters
         ----------
@@ -90,17 +88,14 @@ class KnownMap:
 
         Returns
         -------
-        (n,) int64
-            Flat indices of the fields that are new or have changed.
+        indices, entries : (n,) int64
+            Flat indices of the fields that are new or have changed, and their table entries.
         """
-        room = (layers + 1) ** 2
-        if self._news.size < room:
-            self._news = np.empty(room, dtype=np.int64)
-        count = sense(world, self.table, self.seen, *place, heading, layers, occlusion, self._news)
-        news = self._news[:count].copy()
-        if count:
-            self._least = min(self._least, int(self._flat[news].min()))
-        return news
+        news = np.empty((2, (layers + 1) ** 2), dtype=np.int64)
+        count = sense(
+            world, self.table, self.seen, *place, heading, layers, occlusion, news, self._least
+        )
+        return news[0, :count], news[1, :count]
 
     def dearer(self, places: tuple[Field, ...], penalty: float) -> "KnownMap":
         """Give a copy on which some fields cost more."""
@@ -115,9 +110,14 @@ class KnownMap:
 
 
 def _lies_between(start: Field, target: Field, rows: int, cols: int) -> bool:
-    """Tell whether the start lies on a straightest way to the target from any other field."""
-    y, x = np.mgrid[0:rows, 0:cols]
-    to_start = np.maximum(abs(x - start[0]), abs(y - start[1]))
-    to_target = np.maximum(abs(x - target[0]), abs(y - target[1]))
-    between = to_start + to_target[start[1], start[0]] == to_target
-    return int(np.count_nonzero(between)) > 1
+    """Tell whether the start lies on a straightest way to the target from any other field.
+
+    If so, then from a neighbour: the field before the start on that way.
+    """
+    (x, y), (u, v) = start, target
+    distance = max(abs(u - x), abs(v - y))
+    return any(
+        max(abs(u - i), abs(v - j)) > distance
+        for i in range(max(x - 1, 0), min(x + 2, cols))
+        for j in range(max(y - 1, 0), min(y + 2, rows))
+    )

@@ -3,11 +3,12 @@
 import numpy as np
 from drive_strategies import UNKNOWN, queries
 from hypothesis import given
+from hypothesis import strategies as st
 from naive import shortest_cost
 
 from gapath.graph import shortest_path
 from gapath.grid import OBSTACLE, SCALE, GridMap
-from gapath.known_map import KnownMap
+from gapath.known_map import KnownMap, _lies_between
 from gapath.navigation import Query
 
 
@@ -85,3 +86,15 @@ def test_dearer_is_a_copy():
     assert copy.least_weight((0, 0), (3, 3)) == SCALE // 2
     known.table[2, 2] = OBSTACLE  # it appeared behind the robot
     assert known.dearer(((2, 2),), 3.0).is_obstacle((2, 2))
+
+
+places = st.tuples(st.integers(0, 8), st.integers(0, 5))
+
+
+@given(places, places)
+def test_whether_the_start_shortens_a_way_is_told_by_its_neighbours(start, target):
+    y, x = np.mgrid[0:6, 0:9]
+    to_start = np.maximum(abs(x - start[0]), abs(y - start[1]))
+    to_target = np.maximum(abs(x - target[0]), abs(y - target[1]))
+    between = to_start + to_target[start[1], start[0]] == to_target
+    assert _lies_between(start, target, 6, 9) == (np.count_nonzero(between) > 1)

@@ -70,6 +70,7 @@ def sense(
     layers: int,
     occlusion: bool,
     news: NDArray[np.int64],
+    least: NDArray[np.int64],
 ) -> int:
     """Look in a direction and take over what is seen into the known map.
 
@@ -89,8 +90,11 @@ def sense(
         Range of the sensor: layers 0 to this one.
     occlusion : bool
         An obstacle hides what lies behind it on a straight line.
-    news : ((layers + 1)**2,) int64
-        Overwritten with the flat indices of fields seen for the first time or changed.
+    news : (2, (layers + 1)**2) int64
+        Overwritten with the flat indices of fields seen for the first time or changed, and
+        their table entries.
+    least : (1,) int64
+        Lowered to the least of these entries.
 
     Returns
     -------
@@ -118,7 +122,9 @@ def sense(
             if not seen[v, u] or known_table[v, u] != true_table[v, u]:
                 seen[v, u] = True
                 known_table[v, u] = true_table[v, u]
-                news[count] = v * cols + u
+                news[0, count] = v * cols + u
+                news[1, count] = true_table[v, u]
+                least[0] = min(least[0], news[1, count])
                 count += 1
     return count
 

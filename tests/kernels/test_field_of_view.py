@@ -18,10 +18,12 @@ def see(table, place, heading, layers, occlusion):
     """Look once on a map of which nothing is known; give the fields seen."""
     known = np.full(table.shape, -1, dtype=np.int32)
     seen = np.zeros(table.shape, dtype=np.bool_)
-    news = np.empty((layers + 1) ** 2, dtype=np.int64)
-    count = sense(table, known, seen, *place, heading, layers, occlusion, news)
-    fields = {(int(i) % table.shape[1], int(i) // table.shape[1]) for i in news[:count]}
+    news, least = np.empty((2, (layers + 1) ** 2), dtype=np.int64), np.array([1 << 30])
+    count = sense(table, known, seen, *place, heading, layers, occlusion, news, least)
+    fields = {(int(i) % table.shape[1], int(i) // table.shape[1]) for i in news[0, :count]}
     assert len(fields) == count
+    assert (news[1, :count] == table.ravel()[news[0, :count]]).all()
+    assert least[0] == table[seen].min(initial=1 << 30)
     assert fields == {(int(x), int(y)) for y, x in np.argwhere(seen)}
     assert (known == np.where(seen, table, -1)).all()
     return fields
@@ -55,13 +57,13 @@ def test_layer_x_has_2_x_plus_1_fields(heading):
 def test_only_what_is_new_or_changed_is_news():
     table = np.zeros((9, 9), dtype=np.int32)
     known, seen = np.zeros_like(table), np.zeros(table.shape, dtype=np.bool_)
-    news = np.empty(9, dtype=np.int64)
-    look = (known, seen, 4, 4, 0, 2, False, news)
+    news, least = np.empty((2, 9), dtype=np.int64), np.array([OBSTACLE])
+    look = (known, seen, 4, 4, 0, 2, False, news, least)
     assert sense(table, *look) == 9
     assert sense(table, *look) == 0
     table[4, 6] = OBSTACLE
     assert sense(table, *look) == 1
-    assert news[0] == 4 * 9 + 6
+    assert news[:, 0].tolist() == [4 * 9 + 6, OBSTACLE]
     table[4, 6] = 0
     assert sense(table, *look) == 1
     assert known[4, 6] == 0

@@ -36,7 +36,7 @@ def test_dstar_lite_is_on_a_cheapest_path_in_every_step(problem):
     place = problem.start
     for frame, following in zip(driven.frames, driven.frames[1:], strict=False):
         known.table.ravel()[frame.news] = frame.entries
-        known._least = 0  # the news came by without `look`
+        known._least[0] = 0  # the news came by without `look`
         optimum = shortest_path(Query(known, place, problem.target, problem.corner_cutting))
         path = following.decision.path
         assert (path is not None) == optimum.feasible

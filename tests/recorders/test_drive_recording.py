@@ -85,12 +85,12 @@ def test_the_robot_and_its_trail(found, events):
 @pytest.mark.parametrize("layers", [0, 1, 4])
 def test_the_outline_holds_what_the_sensor_sees(heading, layers):
     table, seen = np.zeros((15, 15), dtype=np.int32), np.zeros((15, 15), dtype=np.bool_)
-    news = np.empty((layers + 1) ** 2, dtype=np.int64)
-    count = sense(table, table.copy(), seen, 7, 7, heading, layers, False, news)
+    news, least = np.empty((2, (layers + 1) ** 2), dtype=np.int64), np.zeros(1, dtype=np.int64)
+    count = sense(table, table.copy(), seen, 7, 7, heading, layers, False, news, least)
     outline = _drive_scene._outline(layers, HEADING_X[heading], HEADING_Y[heading]) + 7.5
     y, x = np.mgrid[0:15, 0:15]
     inside = Polygon(outline).contains_points(np.stack([x.ravel(), y.ravel()], axis=1) + 0.5)
-    assert np.flatnonzero(inside).tolist() == sorted(news[:count].tolist())
+    assert np.flatnonzero(inside).tolist() == sorted(news[0, :count].tolist())
 
 
 def test_it_looks_from_where_it_was(found, events):
