@@ -45,6 +45,8 @@ class Settings:
         Folder of the run folders.
     force : bool
         Run again what is there already.
+    threads : int
+        Threads that work on the trials of a run.
     """
 
     task: str
@@ -59,6 +61,7 @@ class Settings:
     corner_cutting: str
     output: str
     force: bool
+    threads: int
 
 
 @dataclass
@@ -119,11 +122,13 @@ class Run:
     seed, trials : int
         Trials 0 to trials - 1 use the random streams (seed, trial).
     settings : str
-        The resolved configuration as YAML, without the two values below.
+        The resolved configuration as YAML, without the three values below.
     output : str
         Folder of the run folders.
     force : bool
         Run again what is there already.
+    threads : int
+        Threads that work on the trials; they change no result.
     """
 
     experiment: str
@@ -136,6 +141,7 @@ class Run:
     settings: str = field(repr=False)
     output: str
     force: bool
+    threads: int = 1
 
 
 def conf_folder() -> str:
@@ -166,6 +172,7 @@ def make_run(config: DictConfig, method: str) -> Run:
     loose = OmegaConf.to_container(config, resolve=True)
     settings: Settings = typed(Settings, loose, "")
     require(1 <= settings.trials <= 10**6, "trials", settings.trials, "an integer from 1 to 10^6")
+    require(1 <= settings.threads <= 256, "threads", settings.threads, "an integer from 1 to 256")
     require(0 <= settings.seed < 2**64, "seed", settings.seed, "an integer in [0, 2^64)")
     require(settings.output.strip() != "", "output", repr(settings.output), "a folder")
     require(
@@ -179,7 +186,7 @@ def make_run(config: DictConfig, method: str) -> Run:
     kept = {
         key: value
         for key, value in dataclasses.asdict(settings).items()
-        if key not in ("output", "force", "planner", "navigator", "drive")
+        if key not in ("output", "force", "threads", "planner", "navigator", "drive")
         or key in used[settings.task]
     }
     recorders: list[Recorder] = [
@@ -200,6 +207,7 @@ def make_run(config: DictConfig, method: str) -> Run:
         OmegaConf.to_yaml(OmegaConf.create(kept)),
         settings.output,
         settings.force,
+        settings.threads,
     )
 
 

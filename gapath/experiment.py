@@ -145,7 +145,7 @@ def _do_trials(
         for recorder in run.recorders:
             recorder.record(event)
 
-    batch = Batch(run.experiment, run.method, run.problem, run.seed, run.trials)
+    batch = Batch(run.experiment, run.method, run.problem, run.seed, run.trials, run.threads)
     bar = tqdm(
         run.task.trials(batch, optimum),
         desc=f"{run.problem.map.name} {run.method}",

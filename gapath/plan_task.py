@@ -101,7 +101,9 @@ class PlanTask:
             In order.
         """
         distances = clearances(batch.problem.map)
-        answers = plan_trials(batch.problem, optimum, self.planner, batch.seed, batch.trials)
+        answers = plan_trials(
+            batch.problem, optimum, self.planner, batch.seed, batch.trials, batch.threads
+        )
         for answer in answers:
             row = _row(batch, answer, optimum, distances)
             events = partial(trial_events, answer, batch.seed)

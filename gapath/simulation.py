@@ -1,4 +1,4 @@
-"""Planning queries, one trial after another; the only place with a clock."""
+"""Planning queries, trial by trial, and their times."""
 
 import math
 import time
@@ -9,6 +9,7 @@ from gapath.graph import shortest_path
 from gapath.metrics import flaw
 from gapath.problem import Plan, Planner, PlanStatus, Problem
 from gapath.rng import stream
+from gapath.threads import in_order
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +66,7 @@ def _check(problem: Problem, plan: Plan, seed: int, trial: int) -> None:
 
 
 def plan_trials(
-    problem: Problem, optimum: Plan, planner: Planner, seed: int, trials: int
+    problem: Problem, optimum: Plan, planner: Planner, seed: int, trials: int, threads: int = 1
 ) -> Iterator[TimedPlan]:
     """Plan with the random streams (seed, 0) to (seed, trials - 1).
 
@@ -79,6 +80,8 @@ def plan_trials(
         Any planner.
     seed, trials : int
         Keys of the random streams.
+    threads : int
+        Threads that plan; with more than one a trial's time may hold a wait for another.
 
     Yields
     ------
@@ -95,10 +98,13 @@ def plan_trials(
             yield TimedPlan(number, Plan(PlanStatus.INFEASIBLE), math.nan)
         return
     planner.plan(problem, stream(seed, 0))  # compiles the kernels before the clock runs
-    for number in range(trials):
+
+    def work(number: int) -> TimedPlan:
         random = stream(seed, number)
         begin = time.perf_counter()
         plan = planner.plan(problem, random)
-        seconds = time.perf_counter() - begin
-        _check(problem, plan, seed, number)
-        yield TimedPlan(number, plan, seconds)
+        return TimedPlan(number, plan, time.perf_counter() - begin)
+
+    for answer in in_order(work, trials, threads):
+        _check(problem, answer.plan, seed, answer.number)
+        yield answer

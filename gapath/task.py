@@ -16,6 +16,7 @@ class Batch(NamedTuple):
     problem: Problem
     seed: int
     trials: int
+    threads: int = 1
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,8 +9,10 @@ from strategies import planner
 
 from gapath.graph import shortest_path
 from gapath.grid import GridMap
+from gapath.mapio.reconstructed import generate
 from gapath.problem import Plan, PlanStatus, Problem
 from gapath.simulation import plan_trials
+from gapath.threads import in_order
 
 OPEN = Problem(GridMap("open", np.full((9, 9), 0.5)), (0, 4), (8, 4))
 
@@ -73,3 +75,32 @@ def test_corner_cutting_decides_whether_a_problem_is_feasible():
         assert shortest_path(problem).status is status
         (trial,) = plan_trials(problem, shortest_path(problem), planner(), 0, 1)
         assert trial.plan.status is status
+
+
+@pytest.mark.parametrize("threads", [2, 5])
+def test_threads_change_no_plan(threads):
+    grid = generate("kg18_test3", 0)
+    problem = Problem(grid, grid.start, grid.target)
+    ga, optimum = planner(max_epochs=40), shortest_path(problem)
+    alone = list(plan_trials(problem, optimum, ga, 3, 60))
+    together = list(plan_trials(problem, optimum, ga, 3, 60, threads))
+    assert [a.number for a in together] == list(range(60))
+    assert [a.plan.cost for a in together] == [a.plan.cost for a in alone]
+    for a, b in zip(alone, together, strict=True):
+        assert a.plan.evolution.chromosomes.tolist() == b.plan.evolution.chromosomes.tolist()
+
+
+def test_a_failure_on_a_thread_ends_all_of_them():
+    started = []
+
+    def work(number):
+        started.append(number)
+        if number == 3:
+            raise ValueError("three")
+        return number
+
+    results = in_order(work, 10_000, 2)
+    assert [next(results) for _ in range(3)] == [0, 1, 2]
+    with pytest.raises(ValueError, match="three"):
+        next(results)
+    assert len(started) < 100
