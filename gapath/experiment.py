@@ -1,9 +1,8 @@
 """Seeds, trials and run folders: from a checked run to files on disk."""
 
-import io
 import traceback
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +10,7 @@ from gapath.config import Run, task_from_settings
 from gapath.durable import write_whole
 from gapath.events import Event, RunFinished, RunStarted
 from gapath.problem import Plan
+from gapath.rows import parquet
 from gapath.runfolder import MANIFEST, Busy, RunFolder, now, run_key, setting_hash, sha256, versions
 from gapath.task import Batch
 
@@ -119,7 +119,7 @@ def _execute_held(run: Run, folder: RunFolder, key: str, command: str, progress:
         write_whole(folder.path / "config.yaml", run.settings.encode())
         optimum = run.task.optimum(run.problem)
         rows, recorded = _do_trials(run, optimum, folder, progress)
-        write_whole(folder.path / "trials.parquet", _parquet(run.task.row, rows))
+        write_whole(folder.path / "trials.parquet", parquet(run.task.row, rows))
         names = ["config.yaml", "trials.parquet", *recorded]
         folder.keep_only(names)
         folder.write_json(MANIFEST, _manifest(run, folder, key, command, names))
@@ -171,20 +171,6 @@ def _do_trials(
         for recorder in run.recorders:
             recorder.abort()
         raise
-
-
-def _parquet(kind: type[Any], rows: list[Any]) -> bytes:
-    import pyarrow as pa
-    from pyarrow import parquet
-
-    types = {str: pa.string(), int: pa.int64(), float: pa.float64(), bool: pa.bool_()}
-    special = {"seed": pa.uint64()}
-    schema = pa.schema(
-        [(f.name, special.get(f.name, types[f.type])) for f in fields(kind)]  # type: ignore[index]
-    )
-    file = io.BytesIO()
-    parquet.write_table(pa.Table.from_pylist([asdict(row) for row in rows], schema), file)
-    return file.getvalue()
 
 
 def _manifest(
