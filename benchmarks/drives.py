@@ -22,7 +22,8 @@ import yaml
 from benchmarks.measure import Calls, Row, interleave, make_problem, quartiles, timed
 from gapath.components import build, yaml_values
 from gapath.config import Run, conf_folder, make_task
-from gapath.drive_task import DriveTask, drive_events
+from gapath.drive_events import drive_events
+from gapath.drive_task import DriveTask
 from gapath.driving import Drive, Outcome, Sensor, drive
 from gapath.experiment import execute, run_started
 from gapath.navigation import Query

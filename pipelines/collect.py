@@ -9,7 +9,7 @@ import pandas as pd
 from pandas.api.types import is_bool_dtype, is_numeric_dtype
 from tqdm import tqdm
 
-from gapath.drive_task import DriveRow
+from gapath.drive_row import DriveRow
 from gapath.errors import InputError, require
 from gapath.plan_task import PlanRow
 from gapath.runfolder import sha256

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gapath.drive_task import drive_events
+from gapath.drive_events import drive_events
 from gapath.driving import Drive, Frame, Outcome
 from gapath.events import Evolved, RunFinished, RunStarted, TrialFinished, TrialStarted
 from gapath.grid import GridMap
