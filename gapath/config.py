@@ -46,7 +46,7 @@ class Settings:
     force : bool
         Run again what is there already.
     threads : int
-        Threads that work on the trials of a run.
+        Threads that plan the trials of a run; drives have one.
     """
 
     task: str
@@ -128,7 +128,7 @@ class Run:
     force : bool
         Run again what is there already.
     threads : int
-        Threads that work on the trials; they change no result.
+        Threads that plan the trials; they change no result.
     """
 
     experiment: str
@@ -183,6 +183,9 @@ def make_run(config: DictConfig, method: str) -> Run:
     )
     used = {"plan": ("planner",), "drive": ("navigator", "drive")}
     require(settings.task in used, "task", settings.task, f"one of {', '.join(used)}")
+    # A drive's steps are Python, so drives on threads would only wait for one another.
+    alone = settings.task != "drive" or settings.threads == 1
+    require(alone, "threads", settings.threads, "1 with task=drive; more speed up task=plan only")
     kept = {
         key: value
         for key, value in dataclasses.asdict(settings).items()

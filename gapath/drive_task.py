@@ -17,7 +17,6 @@ from gapath.metrics import clearances, path_metrics
 from gapath.navigation import Navigator
 from gapath.problem import Plan, Problem
 from gapath.task import Batch, Trial
-from gapath.threads import in_order
 from gapath.world import Changes
 
 WARM_UP = 20
@@ -104,11 +103,8 @@ class DriveTask:
         problem, seed = batch.problem, batch.seed
         distances = clearances(problem.map)
         self._drive(problem, seed, 0, min(WARM_UP, self.step_limit))
-
-        def work(trial: int) -> Drive:
-            return self._drive(problem, seed, trial, self.step_limit)
-
-        for trial, driven in enumerate(in_order(work, batch.trials, batch.threads)):
+        for trial in range(batch.trials):
+            driven = self._drive(problem, seed, trial, self.step_limit)
             row = drive_row(batch, trial, driven, optimum, distances)
             events = partial(drive_events, driven, problem.map.cols, seed, trial)
             yield Trial(row, row.reached, len(driven.frames), events)
