@@ -1,14 +1,18 @@
 import hashlib
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 import pytest
+import yaml
 
+from gapath.components import yaml_values
 from gapath.events import (
+    Called,
     DriveFinished,
     Evolved,
     RunFinished,
@@ -129,6 +133,33 @@ def make_drives(grid: GridMap, navigator: str, experiment: str, n: int) -> pd.Da
     })  # fmt: skip
 
 
+def drive_settings(navigator: str) -> str:
+    plain = yaml.safe_load((files("gapath.conf") / "config.yaml").read_text("utf-8"))
+    own = {"task": "drive", "navigator": yaml_values("navigator", navigator)}
+    return yaml.safe_dump(own | {"drive": plain["drive"]})
+
+
+def make_calls(i: int, step: int, row: Any) -> Iterator[Called]:
+    """Call planners in a drive's first and fifth step; in the ninth of one that fails in vain."""
+
+    def call(part: str, index: int, cost: float, evaluations: int, adopted: bool = False) -> Called:
+        found = cost < 1000
+        status = PlanStatus.FOUND if found else PlanStatus.NOT_FOUND
+        path = make_path(0) if found else np.empty((0, 2), dtype=np.int32)
+        return Called(
+            step, row.trial, part, index, adopted, status, cost, 10, evaluations, 0, path
+        )  # fmt: skip
+
+    if i == 1:
+        yield call("C", 0, 11.5, 1000, adopted=True)
+    if i == 5:
+        yield call("B", 0, 12.0, 400)
+    if i == 9 and not row.reached:
+        for index, cost in enumerate((100011.5, 100012.0, 200013.5, 100014.0)):
+            yield call("C", index, cost, 2000)
+        yield call("A", 0, 300010.5, 600)
+
+
 def write_drive_log(folder: Path, grid: GridMap, drives: pd.DataFrame) -> None:
     first = drives.iloc[0]
     problem = Problem(grid, grid.start, grid.target)
@@ -137,7 +168,7 @@ def write_drive_log(folder: Path, grid: GridMap, drives: pd.DataFrame) -> None:
     recorder.record(
         RunStarted(
             first["experiment"], first["navigator"], "drive", problem, 0, len(drives),
-            "navigator: {}\n", {"gapath": "0"}, make_path(0), 11.0,
+            drive_settings(first["navigator"]), {"gapath": "0"}, make_path(0), 11.0,
         )
     )  # fmt: skip
     step = 0
@@ -145,7 +176,9 @@ def write_drive_log(folder: Path, grid: GridMap, drives: pd.DataFrame) -> None:
         recorder.record(TrialStarted(step, row.trial, row.seed))
         there = make_path(row.trial)
         path = there if row.reached else np.concatenate([there[:9], there[:8][::-1]])
-        for x, y in path.tolist():
+        for i, (x, y) in enumerate(path.tolist()):
+            for call in make_calls(i, step, row) if row.calls_b else ():
+                recorder.record(call)
             recorder.record(
                 Stepped(
                     step, row.trial, (x, y), 0, 0, np.array([[x, y]], dtype=np.int32),

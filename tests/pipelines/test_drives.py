@@ -3,10 +3,12 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+import yaml
 from gapath.pipelines import (
     figure_drive_paths,
     figure_drive_ratios,
     figure_drive_times,
+    table_drive_calls,
     table_drive_choices,
     table_drive_classes,
     table_drives,
@@ -22,12 +24,16 @@ from hypothesis import strategies as st
 
 from gapath.driving import Outcome
 from gapath.errors import InputError
-from gapath.events import Stepped
+from gapath.events import Called, RunStarted, Stepped
+from gapath.problem import PlanStatus, Problem
 from gapath.recorders.mcap import FILE, read_events
 
-from .conftest import write_manifest
+from .conftest import drive_settings, make_map, make_path, write_manifest
 
-TABLES = (table_drives, table_drive_classes, table_drive_choices, table_drives_overview)
+TABLES = (
+    table_drives, table_drive_calls, table_drive_classes, table_drive_choices,
+    table_drives_overview,
+)  # fmt: skip
 FIGURES = (figure_drive_times, figure_drive_paths, figure_drive_ratios)
 
 
@@ -175,6 +181,61 @@ def test_no_winner_is_named_where_nobody_arrives():
     mine = drives_of(navigator=["kg18", "replan_astar"], reached=False, outcome="returned",
                      steps_ratio=math.nan)  # fmt: skip
     assert not any("fewest" in text for text in table_drives.section(mine, []).remarks)
+
+
+def test_calls_worked_by_hand(case):
+    trials, runs = of(case, "drives")
+    section = table_drive_calls.section(trials, runs)
+    (table,) = section.tables
+    rows = table.data.set_index(["map", "part", "planner"])
+    assert len(rows) == 2 + 6  # on the easy map only those that found a path were called
+    failed = int((~trials.query("map == 'kg18_map4' and navigator == 'kg18'")["reached"]).sum())
+    total = 12 * 1400 + failed * 8600
+    first, third, back = (rows.loc["kg18_map4", *key] for key in (("C", 1), ("C", 3), ("A", 1)))
+    assert (first["calls"], first["failed"], first["control_points"]) == (12 + failed, failed, 4)
+    assert first["found"] == first["adopted"] == pytest.approx(12 / (12 + failed))
+    assert [row["one_obstacle"] for row in (first, third, back)] == [1, 0, 0]
+    assert first["evaluations_share"] == pytest.approx((12000 + 2000 * failed) / total)
+    assert rows.loc["kg18_map4"]["evaluations_share"].sum() == pytest.approx(1)
+    look = rows.loc["kg18_map1", "B", 1]
+    assert (look["found"], look["adopted"], look["failed"]) == (1, 0, 0)
+    assert look["evaluations_share"] == pytest.approx(400 / 1400)
+    shown = table.shown.set_index(["Map", "Part", "Planner"])
+    assert shown.loc["Unknown map 1 (reconstructed)", "B", "1 (k = 4)"].tolist() == [
+        "12", "100", "0", "\N{EN DASH}", "28.6",
+    ]  # fmt: skip
+    vain = f"unknown map 1 0 %, unknown map 4 {100 * failed * 8600 / total:.1f} %"
+    assert vain in section.remarks[0].lower()
+
+
+def test_obstacles_count_by_the_settings_of_the_log():
+    grid = make_map("kg18_map4")
+    settings = yaml.safe_load(drive_settings("kg18"))
+    settings["navigator"]["retreat"]["vln"] = 1000
+    start = RunStarted(
+        "drives", "kg18", "drive", Problem(grid, grid.start, grid.target), 0, 1,
+        yaml.safe_dump(settings), {}, make_path(0), 11.0,
+    )  # fmt: skip
+    nothing = np.empty((0, 2), dtype=np.int32)
+    calls = [
+        Called(1, 0, part, 0, False, PlanStatus.NOT_FOUND, 3014.5, 9, 50, 0, nothing)
+        for part in "AC"
+    ]
+    assert list(table_drive_calls.read_calls(iter([start, *calls]))["obstacles"]) == [3, 0]
+
+
+def test_calls_of_a_log_that_cannot_be_read_are_named(tmp_path, make_drive_run):
+    folder = make_drive_run(tmp_path, "drives", "kg18_map1", "kg18", log=True)
+    log = folder / FILE
+    log.write_bytes(log.read_bytes()[:-200] + bytes(200))
+    section = table_drive_calls.section(pd.DataFrame(), find_runs(tmp_path))
+    assert section.tables == ()
+    assert section.skipped[0][0] == f"drives/{folder.name}"
+    log.unlink()
+    write_manifest(
+        folder, map="kg18_map1", map_instance=0, planner="kg18", seed=0, trials=12, task="drive"
+    )
+    assert table_drive_calls.section(pd.DataFrame(), find_runs(tmp_path)) is None
 
 
 def test_classes_count_instances_and_name_those_that_failed():
