@@ -10,6 +10,7 @@ from hypothesis import settings
 sys.path.insert(0, str(Path(__file__).parent))  # naive, strategies
 
 settings.register_profile("gapath", deadline=None, derandomize=True, max_examples=100)
+settings.register_profile("many", deadline=None, max_examples=2000)
 settings.load_profile("gapath")
 
 

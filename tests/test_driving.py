@@ -35,6 +35,11 @@ sensors = st.builds(Sensor, st.integers(1, 5), st.booleans())
 every_navigator = pytest.mark.parametrize("name", YAMLS)
 
 
+def examples(percent):
+    """Draw so many per cent of the examples that the profile asks for."""
+    return settings(max_examples=settings.default.max_examples * percent // 100)
+
+
 def broken_rules(problem, driven, changes=STATIC, keys=(0, 0)):
     """Replay a drive on the true map and give all that should not have happened."""
     world = World(problem.map, changes, (problem.start, problem.target), *keys)
@@ -83,7 +88,7 @@ def test_every_navigator_has_a_yaml_and_every_yaml_a_navigator():
 
 
 @every_navigator
-@settings(max_examples=60)
+@examples(60)
 @given(worlds(RULES), sensors, st.integers(0, 999))
 def test_drives_keep_the_rules(name, problem, sensor, seed):
     driven = drive(problem, NAVIGATORS[name], sensor, STATIC, seed, 0, LIMIT, 0.5)
@@ -99,7 +104,7 @@ def test_drives_keep_the_rules(name, problem, sensor, seed):
 
 
 @every_navigator
-@settings(max_examples=25)
+@examples(25)
 @given(
     worlds(RULES),
     sensors,
@@ -124,7 +129,7 @@ def test_an_enclosed_target_ends_at_the_start(name):
 
 
 @every_navigator
-@settings(max_examples=15)
+@examples(15)
 @given(worlds(), st.integers(0, 99), st.sampled_from([STATIC, Changes(3, 9, 2)]))
 def test_same_seed_same_drive(name, problem, seed, changes):
     def tell():
