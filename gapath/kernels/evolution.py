@@ -13,6 +13,7 @@ from gapath._jit import kernel
 from gapath.kernels.bspline import Basis
 from gapath.kernels.evaluation import evaluate, workspace
 from gapath.kernels.fitness import KEY_BITS, ONE_OBSTACLE
+from gapath.kernels.history import EPOCHS
 from gapath.kernels.population import (
     Ends,
     InitialPopulation,
@@ -40,10 +41,6 @@ SETTINGS = np.dtype(
     ]
 )
 """Settings of the genetic algorithm, as the kernel takes them: an array of one row."""
-
-EPOCHS = np.dtype([("key", np.int64), ("obstacle_sum", np.int64), ("cost_sum", np.int64)])
-"""What happened in an epoch: the best individual's key, obstacle fields and cost (in units of
-1 / SCALE) of the whole population."""
 
 
 class EvolutionResult(NamedTuple):
@@ -197,34 +194,3 @@ def evolve(
         evaluated = selected
 
     return epoch
-
-
-@kernel
-def fitness_history(
-    history: NDArray[np.void], population: int, vln: float, scale: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Give the paper's numbers: eq. (5) of the best individual, and its mean.
-
-    Parameters
-    ----------
-    history : (E,) EPOCHS
-        History of E epochs.
-    population : int
-        Individuals.
-    vln : float
-        What an obstacle field counts.
-    scale : int
-        Units of cost in a cost of 1.
-
-    Returns
-    -------
-    best, mean : (E,) float64
-        Epoch by epoch.
-    """
-    best = np.empty(history.shape[0])
-    mean = np.empty(history.shape[0])
-    for i in range(best.shape[0]):
-        epoch = history[i]
-        best[i] = (epoch["key"] >> KEY_BITS) * vln + (epoch["key"] & (ONE_OBSTACLE - 1)) / scale
-        mean[i] = (epoch["obstacle_sum"] * vln + epoch["cost_sum"] / scale) / population
-    return best, mean

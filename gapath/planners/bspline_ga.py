@@ -18,10 +18,10 @@ from gapath.kernels.evolution import (
     SETTINGS,
     EvolutionResult,
     evaluations,
-    fitness_history,
     run_evolution,
 )
 from gapath.kernels.fitness import KEY_BITS, ONE_OBSTACLE
+from gapath.kernels.history import fitness_history
 from gapath.problem import Evolution, Plan, PlanStatus, Query, no_path
 from gapath.rng import Stream, probability_threshold
 
