@@ -64,7 +64,7 @@ def plan(
     seed : int
         Key of the random stream: the same seed gives the same plan.
     corner_cutting : str
-        "allow", "one_side" or "forbid".
+        "allow", "one_side", "forbid" or "no_diagonals".
     **settings
         Settings that replace those in ``conf/planner``, for example ``population=200``.
 

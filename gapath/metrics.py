@@ -122,9 +122,13 @@ def flaw(problem: Problem, path: NDArray[np.int32], cost: float | None = None) -
         return "two successive fields are not neighbours"
     if problem.corner_cutting is not CornerCutting.ALLOW:
         first, second = blocked[y[:-1], x[1:]], blocked[y[1:], x[:-1]]
-        either = problem.corner_cutting is CornerCutting.FORBID
-        if ((first | second) if either else (first & second)).any():
-            # a straight step's two fields are its own ends, which are free
+        diagonal = (x[:-1] != x[1:]) & (y[:-1] != y[1:])
+        cut = {
+            CornerCutting.ONE_SIDE: first & second,
+            CornerCutting.FORBID: first | second,
+            CornerCutting.NO_DIAGONALS: np.ones_like(first),
+        }[problem.corner_cutting]
+        if (cut & diagonal).any():
             return "it cuts a corner"
     true_cost = int(grid.table[y, x].sum(dtype=np.int64)) / SCALE
     if cost is not None and cost != true_cost:

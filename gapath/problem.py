@@ -28,6 +28,8 @@ class CornerCutting(IntEnum):
     """Not if both orthogonal neighbours are obstacles."""
     FORBID = 2
     """Not if either orthogonal neighbour is an obstacle (MovingAI's rule)."""
+    NO_DIAGONALS = 3
+    """No diagonal step at all: horizontal and vertical moves only (S04)."""
 
 
 class PlanStatus(IntEnum):

@@ -81,6 +81,8 @@ def forbidden(weights, a, b, rule):
     (x0, y0), (x1, y1) = a, b
     if rule == "allow" or x0 == x1 or y0 == y1:
         return False
+    if rule == "no_diagonals":
+        return True
     sides = is_obstacle(weights, x1, y0) + is_obstacle(weights, x0, y1)
     return sides == 2 or (rule == "forbid" and sides == 1)
 

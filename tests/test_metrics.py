@@ -66,6 +66,7 @@ def test_a_right_path_has_no_flaw():
     assert flaw(Problem(GRID, (0, 0), (4, 3)), PATH) is None
     assert flaw(Problem(GRID, (0, 0), (4, 3), CornerCutting.ONE_SIDE), PATH) is None
     assert "corner" in flaw(Problem(GRID, (0, 0), (4, 3), CornerCutting.FORBID), PATH)
+    assert "corner" in flaw(Problem(GRID, (0, 0), (4, 3), CornerCutting.NO_DIAGONALS), PATH)
 
 
 @given(problems(most=10))

@@ -70,6 +70,7 @@ def test_corner_cutting_decides_whether_a_problem_is_feasible():
         (CornerCutting.ALLOW, PlanStatus.FOUND),
         (CornerCutting.ONE_SIDE, PlanStatus.INFEASIBLE),
         (CornerCutting.FORBID, PlanStatus.INFEASIBLE),
+        (CornerCutting.NO_DIAGONALS, PlanStatus.INFEASIBLE),
     ]:
         problem = Problem(GridMap("gap", weights), (0, 0), (1, 1), rule)
         assert shortest_path(problem).status is status

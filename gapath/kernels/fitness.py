@@ -24,7 +24,7 @@ ONE_OBSTACLE = 1 << KEY_BITS
 MOST_OBSTACLES = (1 << (63 - KEY_BITS)) - 1
 """Obstacle fields that a key can count; a path with more counts as one with so many."""
 
-ALLOW, ONE_SIDE, FORBID = 0, 1, 2  # as gapath.problem.CornerCutting
+ALLOW, ONE_SIDE, FORBID, NO_DIAGONALS = 0, 1, 2, 3  # as gapath.problem.CornerCutting
 
 
 @kernel
@@ -59,7 +59,7 @@ def cuts_corner(table: NDArray[np.int32], x0: int, y0: int, x1: int, y1: int, ru
     x0, y0, x1, y1 : int
         Two neighbouring fields.
     rule : int
-        ALLOW, ONE_SIDE or FORBID.
+        ALLOW, ONE_SIDE, FORBID or NO_DIAGONALS.
 
     Returns
     -------
@@ -68,6 +68,8 @@ def cuts_corner(table: NDArray[np.int32], x0: int, y0: int, x1: int, y1: int, ru
     """
     if rule == ALLOW or x0 == x1 or y0 == y1:
         return False
+    if rule == NO_DIAGONALS:
+        return True
     first = entry(table, x1, y0) >= OBSTACLE
     second = entry(table, x0, y1) >= OBSTACLE
     return (first and second) or (rule == FORBID and (first or second))
@@ -165,7 +167,7 @@ def corners_cut(
     n : int
         Number of steps.
     rule : int
-        ONE_SIDE or FORBID.
+        ONE_SIDE, FORBID or NO_DIAGONALS.
 
     Returns
     -------

@@ -30,11 +30,14 @@ def test_astar_equals_dijkstra_and_bellman(problem):
 
 @given(problems())
 def test_costs_equal_scikit_image(problem):
-    if problem.corner_cutting is not CornerCutting.ALLOW:
+    rule = problem.corner_cutting
+    if rule not in (CornerCutting.ALLOW, CornerCutting.NO_DIAGONALS):
         return
     table = problem.map.table.astype(float)
     start, target = problem.start[::-1], problem.target[::-1]
-    graph = MCP(np.where(problem.map.obstacles, -1, table + 1), fully_connected=True)
+    graph = MCP(
+        np.where(problem.map.obstacles, -1, table + 1), fully_connected=rule is CornerCutting.ALLOW
+    )
     costs, _ = graph.find_costs([start], [target])
     plan = shortest_path(problem)
     if math.isinf(costs[target]):
@@ -42,7 +45,7 @@ def test_costs_equal_scikit_image(problem):
         return
     # MCP refuses weights of 0, so each field costs a unit more; compare with that map's optimum
     again = GridMap("plus", np.where(problem.map.obstacles, 1.0, (table + 1) / SCALE))
-    exact = shortest_path(Problem(again, problem.start, problem.target))
+    exact = shortest_path(Problem(again, problem.start, problem.target, rule))
     assert round(exact.cost * SCALE) == costs[target] or problem.start == problem.target
 
 
