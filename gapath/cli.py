@@ -4,7 +4,7 @@ import os
 import shlex
 import sys
 import traceback
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from hydra import compose
 from hydra import main as hydra_main
@@ -14,12 +14,13 @@ from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.errors import HydraException
 from hydra.experimental.callback import Callback
 from hydra.types import RunMode
-from omegaconf import DictConfig
+from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
-from gapath.config import Run, conf_folder, make_run, method_name
+from gapath.config import Run, conf_folder, make_run
 from gapath.errors import InputError
 from gapath.experiment import Outcome, execute
+from gapath.naming import method_name
 
 BAD_INPUT, FAILED, INTERRUPTED = 2, 1, 130
 
@@ -65,7 +66,8 @@ def job(config: DictConfig) -> None:
     sweep = hydra.mode == RunMode.MULTIRUN
     overrides = list(hydra.overrides.task)
     try:
-        run = make_run(config, method_name(config, hydra.runtime.choices))
+        plain: Any = OmegaConf.to_container(config)
+        run = make_run(config, method_name(plain, hydra.runtime.choices))
         outcome = execute(run, command(overrides))
     except BAD_CONFIGURATION as error:
         fail(complain(error), sweep)

@@ -1,22 +1,20 @@
 """From a composed configuration to a checked run."""
 
 import dataclasses
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib.resources import files
-from pathlib import Path
 from typing import Any
 
-import yaml
 from omegaconf import DictConfig, OmegaConf
 
-from gapath.components import build, typed, yaml_names, yaml_values
+from gapath.components import build, typed, yaml_values
 from gapath.drive_task import DriveTask
 from gapath.driving import Sensor
 from gapath.errors import require
 from gapath.events import Recorder
 from gapath.grid import GridMap
 from gapath.mapio import file
+from gapath.naming import map_name
 from gapath.plan_task import PlanTask
 from gapath.problem import CornerCutting, Problem
 from gapath.task import Task
@@ -214,50 +212,6 @@ def make_run(config: DictConfig, method: str) -> Run:
     )
 
 
-def method_name(config: DictConfig, choices: Mapping[str, str]) -> str:
-    """Name what a run tries: its planner's or navigator's YAML, and what differs from it.
-
-    Parameters
-    ----------
-    config : DictConfig
-        As composed from ``conf``.
-    choices : mapping
-        Configuration group -> name of the chosen YAML.
-
-    Returns
-    -------
-    str
-        For example "ga3", "ga3[population=60]" or "kg18[corner_cutting=forbid,sensor.range=8]".
-    """
-    group = "navigator" if config.get("task") == "drive" else "planner"
-    loose = OmegaConf.to_container(config)
-    assert isinstance(loose, dict)
-    plain = yaml.safe_load((files("gapath.conf") / "config.yaml").read_text("utf-8"))
-    given = _leaves(loose.get(group)) | {"corner_cutting": loose.get("corner_cutting")}
-    usual = {"corner_cutting": plain["corner_cutting"]}
-    if choices[group] in yaml_names(group):
-        usual |= _leaves(yaml_values(group, choices[group]))
-    else:  # a YAML of the user's own
-        usual |= _leaves(loose.get(group))
-    if group == "navigator":
-        given |= _leaves(loose.get("drive"))
-        given["known_map"] = given["known_map"] and Path(str(given["known_map"])).stem
-        usual |= _leaves(plain["drive"])
-    changed = [f"{name}={value}" for name, value in given.items() if usual.get(name) != value]
-    return f"{choices[group]}[{','.join(sorted(changed))}]" if changed else choices[group]
-
-
-def _leaves(value: object, name: str = "") -> dict[str, object]:
-    """Flatten nested settings: dotted name -> value."""
-    if isinstance(value, dict):
-        items = [(f"{name}.{key}".lstrip("."), item) for key, item in value.items()]
-    elif isinstance(value, list):
-        items = [(f"{name}[{i}]", item) for i, item in enumerate(value)]
-    else:
-        return {name: value}
-    return {leaf: item for key, part in items for leaf, item in _leaves(part, key).items()}
-
-
 def make_task(settings: dict[str, Any]) -> Task:
     """Make the task that settings describe.
 
@@ -326,6 +280,9 @@ def read_problem(settings: Settings) -> Problem:
         f"one of {', '.join(rules)}",
     )
     grid: GridMap = build("map", settings.map, "map").read()
+    named = map_name(grid.name, settings.map)
+    if named != grid.name:  # to replace a name takes a copy of the map
+        grid = dataclasses.replace(grid, name=named)
     for name in ("start", "target"):
         require(getattr(grid, name) is not None, f"map.{name}", "null", "a field [x, y]")
     assert grid.start is not None and grid.target is not None

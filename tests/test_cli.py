@@ -111,6 +111,14 @@ def test_a_walled_in_target_is_a_row_not_a_crash(gapath, tmp_path):
     assert json.loads((folder / "status.json").read_bytes())["state"] == "infeasible"
 
 
+def test_the_same_file_with_other_settings_is_another_map(gapath, tmp_path):
+    (tmp_path / "open.map").write_text(OPEN)
+    run = ["-m", "map=movingai", "map.path=open.map", *ENDS, "recorder=none"]
+    assert gapath(*run, "map.free_weight=0.5,0.25")[0] == 0
+    rows = [pq.read_table(path).to_pylist()[0] for path in tmp_path.glob("out/plan/*/*.parquet")]
+    assert {row["map"] for row in rows} == {"open", "open[free_weight=0.25]"}
+
+
 def test_a_failing_run_says_so_in_its_folder(gapath, tmp_path, monkeypatch):
     monkeypatch.setattr("gapath.plan_task.clearances", lambda grid: 1 / 0)
     code, _, errors = gapath("map=kg18_test1")

@@ -1,0 +1,36 @@
+"""What maps and methods are called in tables."""
+
+import pytest
+
+from gapath.components import yaml_values
+from gapath.naming import map_name, method_name
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "expected"),
+    [
+        ("world", {"kind": "barn", "path": "a/world.json"}, "world"),
+        ("world", {"kind": "barn", "path": "world.json", "inflation": 1}, "world[inflation=1]"),
+        ("map", {"kind": "rosmap", "path": "a/office/map.yaml"}, "office"),
+        ("map", {"kind": "rosmap", "path": "map.yaml"}, "map"),
+        ("map", {"kind": "rosmap", "path": "../map.yaml"}, "map"),
+        ("hall", {"kind": "rosmap", "path": "office/hall.yaml"}, "hall"),
+        ("map", {"kind": "rosmap", "path": "office/map.yaml", "unknown": "free", "free_weight": 0},
+         "office[free_weight=0,unknown=free]"),
+        ("arena", {"kind": "movingai", "path": "arena.map", "scenario": "a.scen", "problem": 3},
+         "arena"),
+        ("kg18_test3", yaml_values("map", "kg18_test3") | {"instance": 4}, "kg18_test3"),
+        ("map", {"kind": "file", "path": "office/map.yaml", "start": [0, 0]}, "office"),
+    ],
+)  # fmt: skip
+def test_maps_that_differ_are_called_otherwise(name, values, expected):
+    kind = values["kind"]
+    usual = {} if kind == "reconstructed" else yaml_values("map", kind)
+    assert map_name(name, usual | values) == expected
+
+
+def test_what_is_known_beforehand_is_named_by_its_folder():
+    drive = {"known_map": "office_without_rooms/map.yaml"}
+    config = {"task": "drive", "navigator": yaml_values("navigator", "kg18"), "drive": drive}
+    name = method_name(config | {"corner_cutting": "allow"}, {"navigator": "kg18"})
+    assert name == "kg18[known_map=office_without_rooms]"
