@@ -42,12 +42,19 @@ def new_stream(run: RunStarted, trial: TrialStarted) -> rr.RecordingStream:
     RecordingStream
         Without a sink.
     """
-    key = [run.settings, run.planner, run.problem.map.digest, run.seed, trial.trial]
+    grid = run.problem.map
+    # A viewer keeps one layout an application, so with one only a second map would be shown
+    # under the first one's name and within its bounds.
+    layout = _hash([run.planner, title(grid), grid.rows, grid.cols])
     return rr.RecordingStream(
-        "gapath",
-        recording_id=hashlib.sha256(repr(key).encode()).hexdigest()[:32],
+        f"gapath-{layout[:8]}",
+        recording_id=_hash([run.settings, run.planner, grid.digest, run.seed, trial.trial])[:32],
         send_properties=False,  # would hold the time of day
     )
+
+
+def _hash(parts: list[object]) -> str:
+    return hashlib.sha256(repr(parts).encode()).hexdigest()
 
 
 def log_problem(stream: rr.RecordingStream, run: RunStarted, width: float) -> None:

@@ -15,6 +15,7 @@ import yaml
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from recordings import centres, read, record, rerun_command
+from rerun.chunk import RrdReader
 
 import gapath
 from gapath.errors import InputError
@@ -156,6 +157,19 @@ def test_what_no_epoch_changes(tmp_path):
 def test_only_reconstructed_maps_are_marked(tmp_path):
     record(tmp_path, run_of([evolution(1, 3)], source="movingai"))
     assert "reconstructed" not in read(tmp_path / "trial-0.rrd")["/text", "TextDocument:text"][0]
+
+
+def test_recordings_of_other_maps_have_a_layout_of_their_own(tmp_path):
+    def application(name, trial=0, **changes):
+        folder = tmp_path / name
+        folder.mkdir()
+        record(folder, run_of([evolution(1, 3)], trials=2, **changes), [trial])
+        (entry,) = RrdReader(str(folder / f"trial-{trial}.rrd")).recordings()
+        return entry.application_id
+
+    first = application("first")
+    assert application("trial", trial=1) == first
+    assert application("map", source="movingai") != first
 
 
 def test_planner_without_epochs(tmp_path):
