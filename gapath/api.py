@@ -7,7 +7,7 @@ from gapath.components import build, yaml_values
 from gapath.errors import InputError, require
 from gapath.grid import Field, GridMap
 from gapath.mapio.file import kinds
-from gapath.problem import CornerCutting, Plan, Planner, Problem
+from gapath.problem import CornerCutting, Particular, Plan, Planner, Problem
 from gapath.simulation import plan_once
 
 
@@ -76,7 +76,8 @@ def plan(
     Raises
     ------
     InputError
-        If start or target cannot be used, or a setting is unknown or out of range.
+        If start or target cannot be used, a setting is unknown or out of range, or the planner
+        does not take such a map.
 
     Examples
     --------
@@ -99,4 +100,6 @@ def plan(
         require(not settings, "settings", [*settings], "none: the planner is given ready made")
         chosen = planner
     problem = Problem(map, start, target, CornerCutting[corner_cutting.upper()])
+    if isinstance(chosen, Particular):
+        chosen.check(problem)
     return plan_once(problem, chosen, seed)

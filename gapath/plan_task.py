@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from gapath.events import Event, Evolved, TrialFinished, TrialStarted
 from gapath.graph import shortest_path
 from gapath.metrics import clearances, path_metrics
-from gapath.problem import Plan, Planner, PlanStatus, Problem
+from gapath.problem import Particular, Plan, Planner, PlanStatus, Problem
 from gapath.simulation import TimedPlan, plan_trials
 from gapath.task import Batch, Trial
 
@@ -68,7 +68,9 @@ class PlanTask:
     row = PlanRow
 
     def check(self, problem: Problem) -> None:
-        """Accept every map."""
+        """Raise InputError if the planner does not take such a map."""
+        if isinstance(self.planner, Particular):
+            self.planner.check(problem)
 
     def optimum(self, problem: Problem) -> Plan:
         """Find a path of least cost, KG18 eq. (5).

@@ -203,6 +203,14 @@ class Query(Protocol):
 
 
 @runtime_checkable
+class Particular(Protocol):
+    """A planner that does not suit every problem says so, before a run begins."""
+
+    def check(self, problem: Query) -> None:
+        """Raise InputError if a problem does not suit."""
+
+
+@runtime_checkable
 class Planner(Protocol):
     """What a module of `gapath.planners` offers under the name ``Planner``.
 

@@ -58,7 +58,7 @@ def recording(run: RunStarted, events: list[Event]) -> bytes:
         _log_evolution(stream, run.problem.map, evolved, evolved.step - trial.step + 1)
     last = max((e.step - trial.step + len(e.evolution.best) for e in evolutions), default=None)
     _log_result(stream, finished, last)
-    stream.log("text", _text(run, trial, finished, bool(evolutions)), static=True)
+    stream.log("text", _text(run, trial, finished, evolutions), static=True)
     content: bytes = memory.drain_as_bytes()
     stream.disconnect()
     return content
@@ -150,10 +150,10 @@ def _send_points(
 
 
 def _text(
-    run: RunStarted, trial: TrialStarted, finished: TrialFinished, evolved: bool
+    run: RunStarted, trial: TrialStarted, finished: TrialFinished, evolutions: list[Evolved]
 ) -> rr.TextDocument:
     """Write the panel of settings and result, in Markdown."""
-    if evolved:
+    if evolutions:
         effort = {"epochs": finished.epochs, "evaluations": finished.evaluations}
     else:
         effort = {"expansions": finished.expansions}
@@ -165,12 +165,13 @@ def _text(
         **effort,
         **problem_rows(run, trial),
     }
-    moving = (
-        "- **orange**: best path of the epoch; dots: its way points\n"
-        "- **purple**: its control points and their polygon\n"
-    )
+    moving = ""
+    if evolutions:
+        moving = "- **orange**: best path of the epoch; dots: its way points\n"
+        if evolutions[0].evolution.genotype == "control_points":
+            moving += "- **purple**: its control points and their polygon\n"
     legend = (
-        f"{moving if evolved else ''}"
+        f"{moving}"
         "- **green**: the path found\n- **blue**: a path of least cost\n"
         "- **map**: the brighter, the dearer; white: obstacle\n"
     )

@@ -48,7 +48,7 @@ def test_the_reader_is_found_by_the_suffix(tmp_path):
         assert (grid.weights == weight).all()
 
 
-@pytest.mark.parametrize("name", ["m.txt", "map", "m.scen", ""])
+@pytest.mark.parametrize("name", ["m.text", "map", "m.scen", ""])
 def test_unknown_suffix(name):
     with pytest.raises(InputError) as caught:
         read(name)

@@ -1,0 +1,162 @@
+"""The genetic algorithms of Sedighi et al. 2004 (S04), and of Geisler and Hermanu before it.
+
+A chromosome gives each row of a square grid a column, or each column a row; S04's may switch
+between the two on the way. Fitness is relative to the population: few collisions, then a short
+path of few turns, eqs (1) and (2).
+"""
+
+from dataclasses import dataclass
+from functools import cached_property, partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gapath.errors import require
+from gapath.grid import SCALE
+from gapath.kernels.fitness import KEY_BITS, ONE_OBSTACLE
+from gapath.kernels.history import fitness_history
+from gapath.kernels.raster import polyline
+from gapath.kernels.row_column import MAX_SIDE
+from gapath.kernels.row_column_evolution import SETTINGS, EvolutionResult, run_evolution
+from gapath.problem import Evolution, Plan, PlanStatus, Query, no_path
+from gapath.rng import Stream, probability_threshold
+from gapath.row_column import Frame
+
+MAX_BYTES = 1 << 30
+
+
+@dataclass(frozen=True)
+class Planner:
+    """S04's planner; ``conf/planner/sedighi.yaml`` says where each value comes from.
+
+    Parameters
+    ----------
+    column_wise : bool
+        The flag is a gene: a path may go column by column, not only row by row.
+    switches : int
+        How often a path may change between the two, at most 2.
+    population : int
+        Individuals, at least 2.
+    max_epochs : int
+        Generations; the first is the initial population.
+    stop_when_feasible : bool
+        Stop as soon as the fittest path is feasible, however long it is.
+    crossover_probability : float
+        For each pair of parents; others are copied.
+    mutation_probability : float
+        For each gene.
+    length_weight, turns_weight : float
+        L and T of eq. (1).
+    vln : float
+        What an obstacle field counts in the reported cost, as in KG18.
+    pad_to_square : bool
+        Take a map that is not square, too: what it lacks to one counts as obstacles.
+    """
+
+    column_wise: bool
+    switches: int
+    population: int
+    max_epochs: int
+    stop_when_feasible: bool
+    crossover_probability: float
+    mutation_probability: float
+    length_weight: float
+    turns_weight: float
+    vln: float
+    pad_to_square: bool
+
+    def __post_init__(self) -> None:
+        def check(name: str, good: bool, expected: str) -> None:
+            require(good, f"planner.{name}", getattr(self, name), expected)
+
+        check("switches", 0 <= self.switches <= 2, "an integer from 0 to 2")
+        check(
+            "switches", not self.switches or self.column_wise, "0, as planner.column_wise is false"
+        )
+        check("population", 2 <= self.population <= 65535, "an integer from 2 to 65535")
+        check("max_epochs", 1 <= self.max_epochs <= 10**6, "an integer from 1 to 1000000")
+        for name in ("crossover_probability", "mutation_probability"):
+            check(name, 0 <= getattr(self, name) <= 1, "a number in [0, 1]")
+        for name in ("length_weight", "turns_weight"):
+            check(name, 0 <= getattr(self, name) <= 10**6, "a number from 0 to 1000000")
+        check("turns_weight", self.length_weight + self.turns_weight > 0, "more than 0, or L is")
+        check("vln", 1 <= self.vln < float("inf"), "a finite number above every weight")
+
+    @cached_property
+    def _settings(self) -> NDArray[np.void]:
+        settings = np.zeros(1, dtype=SETTINGS)
+        for name in SETTINGS.names or ():
+            if hasattr(self, name):
+                settings[name] = getattr(self, name)
+        settings["crossover_threshold"] = probability_threshold(self.crossover_probability)
+        settings["mutation_threshold"] = probability_threshold(self.mutation_probability)
+        return settings
+
+    def check(self, problem: Query) -> None:
+        """Refuse a map that is not square, unless it is to be padded, and one that is too large.
+
+        Parameters
+        ----------
+        problem : Query
+            Start and target on a known map.
+
+        Raises
+        ------
+        InputError
+            If the map does not suit.
+        """
+        grid = problem.map
+        require(
+            grid.rows == grid.cols or self.pad_to_square,
+            "map",
+            f"{grid.cols} x {grid.rows} fields",
+            "a square grid (S04), or planner.pad_to_square=true: what it lacks counts as obstacles",
+        )
+        n = max(grid.rows, grid.cols)
+        require(n <= MAX_SIDE, "map", f"{n} fields a side", f"at most {MAX_SIDE} for this planner")
+        needed = 4 * (2 * n + 2) * (2 * self.population + self.max_epochs)
+        require(
+            needed <= MAX_BYTES,
+            "planner.population, planner.max_epochs",
+            f"{self.population}, {self.max_epochs}: {needed / 2**30:.1f} GiB",
+            "settings that need at most 1 GiB",
+        )
+
+    def plan(self, problem: Query, stream: Stream) -> Plan:
+        """Run the genetic algorithm once.
+
+        Parameters
+        ----------
+        problem : Query
+            Start and target on a known map; one that is not square counts as padded.
+        stream : (4,) uint64
+            A random stream, advanced in place.
+
+        Returns
+        -------
+        Plan
+            FOUND with the fittest path, or NOT_FOUND with its cost.
+        """
+        grid = problem.map
+        frame = Frame.of(problem)
+        result = run_evolution(grid.table, frame.ends, frame.flips, self._settings, stream)
+        key = int(result.epochs["key"][-1])
+        found = key < ONE_OBSTACLE
+        return Plan(
+            PlanStatus.FOUND if found else PlanStatus.NOT_FOUND,
+            path=polyline(frame.paths(result.chromosomes[-1:])[0]) if found else no_path(),
+            cost=(key >> KEY_BITS) * self.vln + (key & (ONE_OBSTACLE - 1)) / SCALE,
+            epochs=len(result.epochs),
+            evaluations=self.population * len(result.epochs),
+            trace=partial(self._evolution, result, frame),
+        )
+
+    def _evolution(self, result: EvolutionResult, frame: Frame) -> Evolution:
+        best, mean = fitness_history(result.epochs, self.population, self.vln, SCALE)
+        return Evolution(
+            best=best,
+            mean=mean,
+            chromosomes=result.chromosomes,
+            way_points=frame.paths(result.chromosomes),
+            genotype="row_column",
+        )
