@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from gapath.grid import Table
 from gapath.kernels.population import Ends
-from gapath.kernels.row_column import Genotype, decode, empty_sums, running_sums
+from gapath.kernels.row_column import SWITCHES, Genotype, decode, empty_sums, running_sums
 from gapath.kernels.row_column_reach import UNREACHED, reach
 from gapath.problem import Query
 
@@ -61,6 +61,35 @@ class Frame(NamedTuple):
         return points
 
 
+class Class(NamedTuple):
+    """Which chromosomes have a free path on a map."""
+
+    row_wise: bool
+    """Row-wise ones: Geisler's planner can find a path."""
+    column_wise: bool
+    """Column-wise ones; with `row_wise` all that Hermanu's planner has."""
+    switches: int | None
+    """The fewest switches of a free path, at most 2, which S04 allows; None if there is none."""
+
+
+def classify(problem: Query) -> Class:
+    """Prove which chromosomes have a free path.
+
+    Parameters
+    ----------
+    problem : Query
+        Start and target on a known map.
+
+    Returns
+    -------
+    Class
+        By dynamic programming over all chromosomes (`gapath.kernels.row_column_reach`).
+    """
+    last = _origins(problem, Genotype(True, SWITCHES))[-1, :, :, 0] != UNREACHED
+    used = np.flatnonzero(last.any(axis=1))
+    return Class(bool(last[0, 0]), bool(last[0, 1]), int(used[0]) if len(used) else None)
+
+
 def express(problem: Query, genotype: Genotype) -> NDArray[np.int32] | None:
     """Find a chromosome whose path is free, or prove that there is none.
 
@@ -76,12 +105,8 @@ def express(problem: Query, genotype: Genotype) -> NDArray[np.int32] | None:
     (2 n + 2,) int32 or None
         The chromosome, with as few switches as any; None if no chromosome has a free path.
     """
-    frame = Frame.of(problem)
-    n = frame.side
-    sums = empty_sums(n)
-    running_sums(frame.table, *frame.flips, sums)
-    origins = np.empty((n, genotype.switches + 1, 2, n), dtype=np.int32)
-    reach(sums, frame.ends, genotype, origins)
+    origins = _origins(problem, genotype)
+    n = len(origins)
     ways = np.argwhere(origins[n - 1, :, :, 0] != UNREACHED)
     if not len(ways):
         return None
@@ -99,3 +124,14 @@ def express(problem: Query, genotype: Genotype) -> NDArray[np.int32] | None:
         at = before
     row[0] = mode
     return row
+
+
+def _origins(problem: Query, genotype: Genotype) -> NDArray[np.int32]:
+    """Run the dynamic programming (`gapath.kernels.row_column_reach.reach`)."""
+    frame = Frame.of(problem)
+    n = frame.side
+    sums = empty_sums(n)
+    running_sums(frame.table, *frame.flips, sums)
+    origins = np.empty((n, genotype.switches + 1, 2, n), dtype=np.int32)
+    reach(sums, frame.ends, genotype, origins)
+    return origins
