@@ -79,6 +79,10 @@ class Navigator(Protocol):
     A frozen dataclass whose fields are the settings of its YAML file in ``conf/navigator``.
     """
 
+    @property
+    def complete(self) -> bool:
+        """True if it reaches every target that can be reached on a map that does not change."""
+
     def begin(self, query: Query) -> object:
         """Give the state before the first step.
 

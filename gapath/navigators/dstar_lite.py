@@ -98,6 +98,8 @@ class Navigator:
     had to stand finds it as it needs it.
     """
 
+    complete = True
+
     def begin(self, query: Query) -> Track:
         """Begin a search without a path."""
         return Track((query.start,), memory=Repair(query))

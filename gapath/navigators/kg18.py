@@ -90,6 +90,11 @@ class Navigator:
         )
         require(len(self.replan) > 0, f"{where}.replan", "nothing", "at least one planner")
 
+    @property
+    def complete(self) -> bool:
+        """Only with an exact planner last in part C; a genetic algorithm may miss."""
+        return getattr(self.replan[-1], "exact", False)
+
     def begin(self, query: Query) -> State:
         """Begin without a path, so that the first one comes from part C."""
         return State(Mode.EXPLORE, None, 0, (query.start,))

@@ -19,6 +19,8 @@ from gapath.past_path import Track
 class Navigator:
     """A* from the robot's field on the known map; it has no settings."""
 
+    complete = True
+
     def begin(self, query: Query) -> Track:
         """Begin without a path."""
         return Track((query.start,))

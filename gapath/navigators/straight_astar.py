@@ -26,6 +26,8 @@ class Navigator:
     `Track.memory` is True while the robot follows a straight line.
     """
 
+    complete = True
+
     def begin(self, query: Query) -> Track:
         """Begin without a path."""
         return Track((query.start,), memory=False)

@@ -21,6 +21,8 @@ class Planner:
 
     minimise: str
 
+    exact = True
+
     def __post_init__(self) -> None:
         require(
             self.minimise in ("weights", "length"),
