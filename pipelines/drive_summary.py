@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from .kg18 import rank
+from .names import rank
 from .statistics import Interval, wilson
 from .summary import spread
 from .text import percent, percent_range

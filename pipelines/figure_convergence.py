@@ -12,7 +12,7 @@ from gapath.events import Evolved
 from gapath.recorders.mcap import FILE, read_events
 
 from .figures import legend, looks, panels, render, style
-from .kg18 import label, rank
+from .names import label, rank
 from .runs import Run
 from .section import Figure, Section
 from .text import number

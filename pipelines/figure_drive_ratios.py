@@ -7,7 +7,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from .figures import legend, looks, panels, render, style
-from .kg18 import label, rank
+from .names import label, rank
 from .runs import Run
 from .section import Figure, Section
 from .text import percent

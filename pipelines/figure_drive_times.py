@@ -7,7 +7,8 @@ import pandas as pd
 
 from .drive_summary import OUTCOMES
 from .figures import panels, render, style
-from .kg18 import DRIVE_SECONDS, UNKNOWN_MAPS, label, rank
+from .kg18 import DRIVE_SECONDS, UNKNOWN_MAPS
+from .names import label, rank
 from .runs import Run
 from .section import Figure, Section
 from .text import number, span

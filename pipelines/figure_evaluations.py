@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from .figures import legend, looks, panels, render, style
-from .kg18 import label, rank
+from .names import label, rank
 from .runs import Run
 from .section import Figure, Section
 from .text import percent

@@ -16,8 +16,8 @@ from gapath.events import Event, RunStarted, TrialFinished
 from gapath.recorders.mcap import FILE, read_events
 
 from .figures import WIDTH, Look, looks, render, style
-from .kg18 import label, rank
 from .map_picture import draw_map, mark_ends
+from .names import label, rank
 from .runs import Run
 from .section import RECONSTRUCTED, Figure, Section
 from .text import number

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Canvas
 from matplotlib.lines import Line2D
 
-from .kg18 import label, rank
+from .names import label, rank
 
 WIDTH = 4.6
 """Width of every figure, inches: shrunk to a phone's width its 10 pt stay legible."""

@@ -1,31 +1,25 @@
-"""What KG18 printed, and the names that its tables and figures use.
+"""What KG18 printed.
 
 KG18: Kwaśniewski & Gosiewski 2018, DOI 10.2478/ama-2018-0024.
 """
 
 MAPS = ("kg18_test1", "kg18_test2", "kg18_test3", "kg18_test4")
-PLANNERS = ("ga1", "ga2", "ga3", "astar", "dijkstra")
+PLANNERS = ("ga1", "ga2", "ga3")
 UNKNOWN_MAPS = ("kg18_map1", "kg18_map2", "kg18_map3", "kg18_map4")
-NAVIGATORS = (
-    "kg18", "kg18_fast", "kg18_astar", "replan_astar", "dstar_lite", "straight_astar",
-)  # fmt: skip
+NAVIGATORS = ("kg18", "kg18_fast", "kg18_astar")
 
-_LABELS = {
+LABELS = {
     "ga1": "GA 1",
     "ga2": "GA 2",
     "ga3": "GA 3",
-    "astar": "A*",
-    "dijkstra": "Dijkstra",
     **{name: f"Map {name[-1]}" for name in MAPS},
     **{name: f"Unknown map {name[-1]}" for name in UNKNOWN_MAPS},
     "kg18_enclosed": "Enclosed target",
     "kg18": "KG18",
     "kg18_fast": "KG18 fast",
     "kg18_astar": "KG18 + A*",
-    "replan_astar": "Repeated A*",
-    "dstar_lite": "D* Lite",
-    "straight_astar": "Straight or A*",
 }
+"""What the paper calls its maps and planners, and what we call its navigator."""
 
 NOT_FOUND = None
 """The paper's "N.F.": no path in 500 epochs."""
@@ -94,39 +88,3 @@ def implied_epochs(map_name: str, planner: str) -> list[int]:
         return []
     one = min(found_seconds("kg18_test1", planner), default=1.0)
     return [round(time / one) for time in found_seconds(map_name, planner)]
-
-
-def label(name: str, source: str = "") -> str:
-    """Give the name that people read, with the mark that a reconstructed map must carry.
-
-    Parameters
-    ----------
-    name : str
-        Of a map, planner or navigator, as in the configuration.
-    source : str
-        The map's source.
-
-    Returns
-    -------
-    str
-        The paper's name, or the given one if the paper has none.
-    """
-    text = _LABELS.get(name, name)
-    return f"{text} (reconstructed)" if source == "reconstructed" else text
-
-
-def rank(name: str) -> tuple[int, str]:
-    """Give the place of a map or method in the tables: the paper's order, then the alphabet's.
-
-    Parameters
-    ----------
-    name : str
-        Of a map, planner or navigator, as in the configuration.
-
-    Returns
-    -------
-    (int, str)
-        A key to sort by.
-    """
-    names = (*MAPS, *UNKNOWN_MAPS, "kg18_enclosed", *PLANNERS, *NAVIGATORS)
-    return (names.index(name) if name in names else len(names), name)

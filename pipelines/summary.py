@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from .kg18 import rank
+from .names import rank
 from .statistics import expected_running_time, median_interval, wilson
 
 

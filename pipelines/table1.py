@@ -4,7 +4,8 @@ from collections.abc import Callable, Sequence
 
 import pandas as pd
 
-from .kg18 import SECONDS, found_seconds, implied_epochs, label
+from .kg18 import SECONDS, found_seconds, implied_epochs
+from .names import label
 from .runs import Run
 from .section import RECONSTRUCTED, Section, Table
 from .summary import Spread, summarise_by

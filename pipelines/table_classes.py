@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import pandas as pd
 
-from .kg18 import label, rank
+from .names import label, rank
 from .runs import Run
 from .section import RECONSTRUCTED, Section, Table
 from .statistics import wilson

@@ -9,7 +9,7 @@ from gapath.errors import InputError
 from gapath.events import Called, Event
 from gapath.recorders.mcap import FILE, read_events
 
-from .kg18 import label, rank
+from .names import label, rank
 from .runs import Run
 from .section import RECONSTRUCTED, Section, Table
 from .text import NOTHING, number, percent

@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 
 from .drive_summary import over_instances
-from .kg18 import label
+from .names import label
 from .runs import Run
 from .section import Section, Table
 from .text import middle, number, percent, percent_range

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import pandas as pd
 
 from .drive_summary import over_instances, summarise_drives_by
-from .kg18 import label, rank
+from .names import label, rank
 from .runs import Run
 from .section import RECONSTRUCTED, Section, Table
 from .text import middle, number, percent, percent_range

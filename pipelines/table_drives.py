@@ -5,7 +5,8 @@ from collections.abc import Sequence
 import pandas as pd
 
 from .drive_summary import rate, summarise_drives_by
-from .kg18 import DRIVE_SECONDS, label
+from .kg18 import DRIVE_SECONDS
+from .names import label
 from .runs import Run
 from .section import RECONSTRUCTED, Section, Table
 from .text import NOTHING, middle, number

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import pandas as pd
 
 from .drive_summary import rate, summarise_drives_by
-from .kg18 import label
+from .names import label
 from .runs import Run
 from .section import Section, Table
 from .text import middle, number

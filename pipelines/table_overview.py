@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import pandas as pd
 
-from .kg18 import label
+from .names import label
 from .runs import Run
 from .section import Section, Table
 from .summary import summarise_by

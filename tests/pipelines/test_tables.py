@@ -4,7 +4,8 @@ import pandas as pd
 import pytest
 from gapath.pipelines import table1, table_classes, table_overview
 from gapath.pipelines.collect import collect
-from gapath.pipelines.kg18 import SECONDS, implied_epochs, label
+from gapath.pipelines.kg18 import SECONDS, implied_epochs
+from gapath.pipelines.names import label, rank
 from gapath.pipelines.section import Table
 from gapath.pipelines.statistics import wilson
 from gapath.pipelines.summary import summarise, summarise_by
@@ -150,3 +151,11 @@ def test_labels_carry_the_mark():
     assert label("kg18_test2", "reconstructed") == "Map 2 (reconstructed)"
     assert label("arena", "movingai") == "arena"
     assert label("astar") == "A*"
+    assert label("kg18[sensor.range=8]") == "KG18 [sensor.range=8]"
+    assert label("s04_sp07", "reconstructed") == "SPSet07 (reconstructed)"
+    assert label("x[y=1]") == "x [y=1]"
+
+
+def test_what_differs_from_a_yaml_stands_beside_it():
+    names = ["zzz", "sedighi", "ga2", "ga1[population=60]", "ga1"]
+    assert sorted(names, key=rank) == ["ga1", "ga1[population=60]", "ga2", "sedighi", "zzz"]
