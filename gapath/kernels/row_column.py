@@ -22,7 +22,7 @@ from gapath.kernels.population import Ends
 from gapath.units import OBSTACLE
 
 MAX_SIDE = 700
-"""Longest side of a map: so that a path's obstacle fields, below n**2 + n, fit into a key."""
+"""Longest side of a map: so that a path's obstacle fields, below n**2 + 2 n, fit into a key."""
 
 HORIZONTAL = 1
 """The direction that goes first along the row; 0 goes first along the column."""
