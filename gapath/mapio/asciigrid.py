@@ -4,16 +4,19 @@ The format of the grids that go round with S04's kind of planner: from the upper
 the lower right one.
 """
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from gapath.errors import require
-from gapath.grid import MAX_SIDE, GridMap
+from gapath.grid import MAX_FIELDS, GridMap
 from gapath.mapio._input import as_field, read_text
 
 SUFFIXES: tuple[str, ...] = (".txt",)
+
+MAX_ROWS = math.isqrt(MAX_FIELDS)
 
 
 @dataclass(frozen=True)
@@ -53,22 +56,21 @@ class Reader:
         InputError
             If the file cannot be read or is not of the format.
         """
-        head, *lines = read_text(self.path).rstrip().split("\n")
-        good = head.strip().isascii() and head.strip().isdigit() and len(head.strip()) < 6
+        head, *rows = [line.rstrip() for line in read_text(self.path).rstrip().split("\n")]
+        good = head.isascii() and head.isdigit() and len(head) < 6
         require(good, f"{self.path}, line 1", repr(head[:40]), "the number of rows")
         n = int(head)
-        require(1 <= n <= MAX_SIDE, f"{self.path}, line 1", n, f"from 1 to {MAX_SIDE} rows")
-        require(len(lines) == n, self.path, f"{len(lines)} rows", f"{n}, as line 1 says")
-        for number, line in enumerate(lines, start=2):
-            row = line.rstrip()
+        require(1 <= n <= MAX_ROWS, f"{self.path}, line 1", n, f"from 1 to {MAX_ROWS} rows")
+        require(len(rows) == n, self.path, f"{len(rows)} rows", f"{n}, as line 1 says")
+        for number, row in enumerate(rows, start=2):
             where = f"{self.path}, line {number}"
             require(len(row) == n, where, f"{len(row)} characters", f"{n}: the grid is square")
             require(not row.strip("01"), where, repr(row[:40]), "0 (free) and 1 (obstacle) only")
-        blocked = np.array([[field == "1" for field in line.rstrip()] for line in lines])
+        codes = np.frombuffer("".join(rows).encode(), dtype=np.uint8).reshape(n, n)
         start, target = as_field("map.start", self.start), as_field("map.target", self.target)
         return GridMap(
             name=Path(self.path).stem,
-            weights=np.where(blocked, 1.0, self.free_weight),
+            weights=np.where(codes == ord("1"), 1.0, self.free_weight),
             start=start or (0, 0),
             target=target or (n - 1, n - 1),
             source="asciigrid",
