@@ -186,12 +186,13 @@ def test_an_interrupted_run_says_so(gapath, tmp_path, monkeypatch):
         (["recorder=tape"], "recorder/tape"),
         (["map=file"], "map.path: got nothing"),
         (["map=file", "map.path=gone.map"], "gone.map"),
-        (["map=file", "map.path=notes.txt"], "map.path: got notes.txt"),
+        (["map=file", "map.path=notes.doc"], "map.path: got notes.doc"),
         (["map=file", "map.path=open.map"], "map.start: got null"),
         (["map=file", "map.path=open.map", "map.start=[0,0]"], "map.target: got null"),
         (["map=file", "map.path=open.map", "map.start=[5,0]", "map.target=[0,0]"], "map.start"),
         (["map=file", "map.path=open.map", "map.start=[0]", "map.target=[0,0]"], "map.start"),
         (["map=file", "map.path=walled.map", "map.start=[2,0]", "map.target=[0,0]"], "an obstacle"),
+        (["map=kg18_test1", "planner=sedighi"], "map: got 100 x 50 fields, expected a square grid"),
         (["map=file", "map.path=short.map", *ENDS], "short.map"),
         (["map=file", "map.path=binary.map", *ENDS], "binary.map"),
         (["map=file", "map.path=deep.png", *ENDS], "deep.png"),
@@ -207,7 +208,7 @@ def test_an_interrupted_run_says_so(gapath, tmp_path, monkeypatch):
     ],
 )
 def test_bad_input_is_one_clear_error(gapath, tmp_path, arguments, named):
-    files = {"open.map": OPEN, "walled.map": WALLED, "short.map": OPEN[:-6], "notes.txt": "hello"}
+    files = {"open.map": OPEN, "walled.map": WALLED, "short.map": OPEN[:-6], "notes.doc": "hello"}
     ros = "image: {}\nresolution: {}\norigin: [0, 0, 0]\nnegate: 0\n"
     ros += "occupied_thresh: 0.65\nfree_thresh: 0.25\n"
     files |= {"dangling.yaml": ros.format("gone.pgm", 0.05)}
