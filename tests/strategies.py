@@ -11,9 +11,9 @@ RULES = [rule.name.lower() for rule in CornerCutting]
 
 
 @st.composite
-def weights(draw, most=24):
+def weights(draw, most=24, least=2):
     """Small maps: any weights, some obstacles."""
-    rows, cols = draw(st.integers(2, most)), draw(st.integers(2, most))
+    rows, cols = draw(st.integers(least, most)), draw(st.integers(least, most))
     random = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     values = random.choice([0.0, 0.25, 0.5, 0.7, 1 / 3, 0.999], (rows, cols))
     values[random.random((rows, cols)) < draw(st.sampled_from([0.0, 0.1, 0.3, 0.5]))] = 1.0
@@ -21,9 +21,9 @@ def weights(draw, most=24):
 
 
 @st.composite
-def problems(draw, most=24):
+def problems(draw, most=24, least=2):
     """Problems on small maps; the target may be walled in."""
-    values = draw(weights(most))
+    values = draw(weights(most, least))
     rows, cols = values.shape
     places = st.tuples(st.integers(0, cols - 1), st.integers(0, rows - 1))
     start, target = draw(places), draw(places)
