@@ -13,21 +13,31 @@ from pathlib import Path
 import pytest
 from mcap.reader import make_reader
 
+from gapath.api import load_map
 from gapath.components import build, yaml_values
 from gapath.config import Run
 from gapath.experiment import execute
-from gapath.grid import GridMap
-from gapath.mapio.reconstructed import CLASSES, Reader
+from gapath.mapio.reconstructed import CLASSES
 from gapath.plan_task import PlanTask
 from gapath.problem import Problem
 from gapath.recorders import mcap
 
-GOLDEN = Path(__file__).parent / "golden" / "table1.json"
-PLANNERS = ["ga1", "ga2", "ga3", "dijkstra", "astar"]
+GOLDEN = Path(__file__).parent / "golden"
+
+TABLE1 = [
+    (map_class, planner)
+    for planner in ("ga1", "ga2", "ga3", "dijkstra", "astar")
+    for map_class in CLASSES
+]
+S04 = [
+    (drawing, planner)
+    for planner in ("geisler", "hermanu", "sedighi")
+    for drawing in ("s04_sp03", "s04_sp07")
+]
 
 
-def run(folder, map_class, planner, trials=2, **values):
-    grid: GridMap = Reader(map_class, 0).read()
+def run(folder, map_name, planner, trials=2, **values):
+    grid = load_map(map_name)
     settings = yaml_values("planner", planner) | values
     problem = Problem(grid, grid.start, grid.target)
     made = build("planner", settings, "planner")
@@ -61,8 +71,8 @@ def log_hash(path):
     return digest.hexdigest()
 
 
-def results(folder, map_class, planner, trials=2, **values):
-    outcome = run(folder, map_class, planner, trials, **values)
+def results(folder, map_name, planner, trials=2, **values):
+    outcome = run(folder, map_name, planner, trials, **values)
     return {
         "status": [row.status for row in outcome.rows],
         "cost": [row.cost for row in outcome.rows],
@@ -71,15 +81,25 @@ def results(folder, map_class, planner, trials=2, **values):
     }
 
 
-@pytest.mark.parametrize("map_class", CLASSES)
-@pytest.mark.parametrize("planner", PLANNERS)
+def check(ours, experiment, name, update):
+    path = GOLDEN / f"{experiment}.json"
+    golden = json.loads(path.read_text()) if path.exists() else {}
+    if update:
+        golden[name] = ours
+        path.write_text(json.dumps(golden, indent=1, sort_keys=True) + "\n")
+    assert ours == golden[name]
+
+
+@pytest.mark.parametrize(("map_class", "planner"), TABLE1)
 def test_table1_gives_the_golden_results(map_class, planner, tmp_path, update_golden):
     ours = results(tmp_path, map_class, planner)
-    golden = json.loads(GOLDEN.read_text()) if GOLDEN.exists() else {}
-    if update_golden:
-        golden[f"{map_class} {planner}"] = ours
-        GOLDEN.write_text(json.dumps(golden, indent=1, sort_keys=True) + "\n")
-    assert ours == golden[f"{map_class} {planner}"]
+    check(ours, "table1", f"{map_class} {planner}", update_golden)
+
+
+@pytest.mark.parametrize(("drawing", "planner"), S04)
+def test_s04_gives_the_golden_results(drawing, planner, tmp_path, update_golden):
+    ours = results(tmp_path, drawing, planner, max_epochs=100)
+    check(ours, "s04_table1", f"{drawing} {planner}", update_golden)
 
 
 def test_two_runs_give_the_same_log_byte_for_byte(tmp_path):
@@ -100,7 +120,11 @@ def test_a_trial_does_not_depend_on_how_many_others_run(tmp_path):
         )
 
 
-SMALL = ("kg18_test2", "ga1", 1)
+def small(folder):
+    return [
+        results(folder / "kg18", "kg18_test2", "ga1", 1, max_epochs=20),
+        results(folder / "s04", "s04_sp06", "sedighi", 1, max_epochs=20, population=30),
+    ]
 
 
 @pytest.mark.parametrize(
@@ -113,10 +137,10 @@ SMALL = ("kg18_test2", "ga1", 1)
     ids=lambda environment: "=".join(*environment.items()),
 )
 def test_results_do_not_depend_on_how_the_kernels_are_compiled(environment, tmp_path):
-    here = results(tmp_path / "here", *SMALL, max_epochs=20)
+    here = small(tmp_path / "here")
     code = (
-        "import json, pathlib, sys, test_golden as t; "
-        "print(json.dumps(t.results(pathlib.Path(sys.argv[1]), *t.SMALL, max_epochs=20)))"
+        "import json, pathlib, sys, test_golden; "
+        "print(json.dumps(test_golden.small(pathlib.Path(sys.argv[1]))))"
     )
     there = subprocess.run(
         [sys.executable, "-W", "ignore", "-c", code, str(tmp_path / "there")],
