@@ -10,10 +10,10 @@ PYTHONS := $(PYTHON) python3 python3.13 python3.12 python3.11 python
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' Makefile | sed 's/:.*## /\t/' | awk -F '\t' '{printf "make %-9s %s\n", $$1, $$2}'
 
-# Their tables give computing times, so these two run alone; the others run two at a time.
-TIMED := table1 drives
-# What no paper has: one decision at a time, which takes minutes of its own.
-OWN := drive_choices
+# Their tables give computing times, or they take both cores, so these run alone; the others two at a time.
+TIMED := table1 drives s04_table1
+# What no paper has: one decision at a time, many settings; each takes minutes of its own.
+OWN := drive_choices s04_sweep
 OTHERS := $(filter-out $(TIMED) $(OWN),$(basename $(notdir $(wildcard conf/experiment/*.yaml))))
 
 .PHONY: paper
@@ -27,7 +27,12 @@ paper: $(VENV)/ready ## do every published experiment and build the report (abou
 
 .PHONY: choices
 choices: $(VENV)/ready ## vary what KG18 leaves open, one decision at a time (some four minutes)
-	@$(BIN)/gapath experiment=$(OWN) output="$(OUTPUT)"
+	@$(BIN)/gapath experiment=drive_choices output="$(OUTPUT)"
+	@$(BIN)/gapath-report "$(OUTPUT)"
+
+.PHONY: sweep
+sweep: $(VENV)/ready ## vary what S04 leaves open: 36 settings of 24 cells (some ten minutes)
+	@$(BIN)/gapath experiment=s04_sweep output="$(OUTPUT)"
 	@$(BIN)/gapath-report "$(OUTPUT)"
 
 .PHONY: test

@@ -1,0 +1,166 @@
+import math
+
+import pandas as pd
+import pytest
+from gapath.pipelines import figure_s04_paths, table_s04, table_s04_sweep
+from gapath.pipelines.collect import collect
+from gapath.pipelines.runs import find_runs
+from gapath.pipelines.s04 import MAPS, RUNS, SUCCESSES, paper_successes
+from gapath.pipelines.statistics import wilson
+
+from gapath.components import build, yaml_values
+from gapath.config import Run
+from gapath.errors import InputError
+from gapath.experiment import execute
+from gapath.plan_task import PlanTask
+from gapath.problem import CornerCutting, Problem
+from gapath.recorders import mcap
+
+PERCENT = {  # as the paper prints them, by search space
+    1: (100, 93.3, 93.3), 2: (0, 86.7, 100), 3: (73, 86.7, 100), 4: (53, 80, 100),
+    5: (0, 100, 100), 6: (0, 20, 100), 7: (0, 0, 86.7), 8: (0, 0, 73.3),
+}  # fmt: skip
+
+
+def trials(planner, found, of, **columns):
+    frame = pd.DataFrame({"feasible": [i < found for i in range(of)], "trial": range(of)})
+    defaults = {
+        "map": "s04_sp07", "map_source": "reconstructed", "planner": planner, "seed": 0,
+        "plan_time_s": 0.5, "optimality_ratio": math.nan, "evaluations": 200, "epochs": 4,
+    }  # fmt: skip
+    return frame.assign(**defaults | columns)
+
+
+def test_the_papers_percentages_are_counts_of_fifteen_runs():
+    for number, percentages in PERCENT.items():
+        for count, percent in zip(SUCCESSES[f"s04_sp{number:02d}"], percentages, strict=True):
+            assert 100 * count / RUNS == pytest.approx(percent, abs=0.4)
+    assert sorted(SUCCESSES) == sorted(MAPS)
+    assert paper_successes("s04_sp06", "hermanu[population=50]") == 3
+    assert paper_successes("s04_sp06", "astar") is None
+    assert paper_successes("kg18_test1", "sedighi") is None
+
+
+def test_a_cell_worked_by_hand():
+    frame = pd.concat(
+        [
+            trials("sedighi[corner_cutting=no_diagonals]", 6, 15, epochs=1000),
+            trials("sedighi[corner_cutting=no_diagonals,stop_when_feasible=True]", 50, 100),
+        ]
+    )
+    (row,) = table_s04.summarise_cells(frame).to_dict("records")
+    assert (row["planner"], row["n"], row["found"], row["success"]) == ("sedighi", 100, 50, 0.5)
+    assert (row["fifteen_n"], row["fifteen_found"], row["paper"]) == (15, 6, 13)
+    assert (row["paper_low"], row["paper_high"]) == wilson(13 / 15, 15)
+    assert not row["inside"]  # 50 % lies below 62 %
+    assert not row["paper_inside"]  # 86.7 % lies above 64 %
+    section = table_s04.section(frame, [])
+    (shown,) = section.tables[0].shown.to_dict("records")
+    assert shown["Search space"] == "SPSet07 (reconstructed)"
+    assert (shown["Paper, %"], shown["15 runs, %"], shown["Found, %"]) == ("86.7", "40", "50")
+    assert (shown["Paper inside"], shown["Inside the paper's"]) == ("no", "no")
+    assert "0 of 1 cells" in section.remarks[0] and "SPSet07 (50 %)" in section.remarks[0]
+
+
+def test_a_cell_that_agrees_and_seeds_alone():
+    frame = trials("sedighi[stop_when_feasible=True]", 80, 100)
+    section = table_s04.section(frame, [])
+    (shown,) = section.tables[0].shown.to_dict("records")
+    assert shown["Inside the paper's"] == "yes"
+    assert shown["15 runs, %"] == shown["Paper inside"] == "\N{EN DASH}"
+    assert "1 of 1 cells lie in the paper's interval." in section.remarks[0]
+
+
+def test_a_path_that_was_found_and_lost_is_counted():
+    first = trials("sedighi[stop_when_feasible=True]", 10, 20)
+    last = trials("sedighi", 8, 15)
+    assert table_s04.lost(pd.concat([first, last])) == (2, 10)
+    assert table_s04.lost(first) == (0, 0)
+
+
+def test_a_swept_setting_is_read_from_the_name():
+    plain = yaml_values("planner", "sedighi")
+    planner, settings = table_s04_sweep.swept_settings(
+        "hermanu[corner_cutting=no_diagonals,mutation_probability=0.005,population=50]"
+    )
+    assert planner == "hermanu"
+    assert settings == {
+        "population": 50,
+        "mutation_probability": 0.005,
+        "crossover_probability": plain["crossover_probability"],
+    }
+    assert table_s04_sweep.swept_settings("geisler")[1]["population"] == plain["population"]
+
+
+def test_the_nearest_setting_comes_first():
+    frame = pd.concat(
+        [
+            trials("sedighi[population=50]", 20, 50),  # misses 62.1 % by 22.1 points
+            trials("sedighi[population=100]", 40, 50),
+            trials("sedighi[population=300]", 50, 50),  # 96.3 % by 3.7
+            trials("hermanu[population=50]", 0, 50),
+            trials("hermanu[population=100]", 0, 50),
+            trials("hermanu[population=300]", 0, 50),
+        ]
+    )
+    rows = table_s04_sweep.rate_settings(table_s04_sweep.rate_cells(frame))
+    assert list(rows["population"]) == [100, 300, 50]
+    assert list(rows["inside"]) == [2, 1, 1]
+    low, high = wilson(13 / 15, 15)
+    assert list(rows["off"]) == pytest.approx([0, 1 - high, low - 0.4])
+    section = table_s04_sweep.section(frame, [])
+    assert "population 100" in section.remarks[0] and "2 of 2 cells" in section.remarks[0]
+    assert section.figures[0].png.startswith(b"\x89PNG")
+
+
+@pytest.fixture(scope="module")
+def outputs(tmp_path_factory):
+    """Real runs, few generations: S04's planner finds a path on SPSet03, Hermanu's none on 07."""
+    folder = tmp_path_factory.mktemp("s04")
+    for name, planner in (("s04_sp03", "sedighi"), ("s04_sp07", "hermanu")):
+        grid = build("map", yaml_values("map", name), "map").read()
+        problem = Problem(grid, grid.start, grid.target, CornerCutting.NO_DIAGONALS)
+        settings = yaml_values("planner", planner) | {"max_epochs": 40}
+        text = f"task: plan\nplanner: {settings}\n"
+        task = PlanTask(build("planner", settings, "planner"))
+        log = [mcap.Recorder(flush_every=100)]
+        execute(
+            Run("s04_table1", planner, problem, task, log, 0, 3, text, str(folder), False),
+            "test",
+            progress=False,
+        )
+    return folder
+
+
+def test_the_best_path_of_a_run_is_free_and_has_the_fewest_turns(outputs):
+    frame = collect(outputs).plans
+    for run in find_runs(outputs):
+        best = figure_s04_paths.read_best(run)
+        mine = frame[frame["map"] == run.manifest["map"]]
+        assert best.feasible == mine["feasible"].any()
+        if best.feasible:
+            steps = best.path[1:] - best.path[:-1]
+            turns = (steps[1:] != steps[:-1]).any(axis=1).sum()
+            assert turns == mine.loc[mine["feasible"], "turns"].min()
+        else:
+            x, y = best.path.T
+            assert best.start.problem.map.obstacles[y, x].any()
+
+
+def test_search_spaces_are_drawn_from_logs(outputs, tmp_path):
+    frame, runs = collect(outputs).plans, find_runs(outputs)
+    section = figure_s04_paths.section(frame, runs)
+    (figure,) = section.figures
+    assert "SPSet07, Hermanu 2002" in figure.alt and "fields in obstacles" in figure.alt
+    assert "SPSet03, Sedighi 2004: free" in figure.alt
+    assert figure.png.startswith(b"\x89PNG")
+    assert figure_s04_paths.section(frame, []) is None
+
+
+def test_a_log_that_cannot_be_read_is_named(outputs, monkeypatch):
+    def broken(path):
+        raise InputError(path, "damaged", "a whole log")
+
+    monkeypatch.setattr(figure_s04_paths, "read_events", broken)
+    section = figure_s04_paths.section(collect(outputs).plans, find_runs(outputs))
+    assert len(section.skipped) == 2 and not section.figures
