@@ -2,17 +2,20 @@
 
 import csv
 import sys
+from importlib import import_module
 from pathlib import Path
 
+import naive_row_column
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from row_column_strategies import as_rows
 from strategies import planner, problems
 
 sys.path.insert(0, str(Path(__file__).parents[2]))  # benchmarks is not installed
 
-from benchmarks import __main__, drives, exact, ga_run, logging, sweep, textbook
+from benchmarks import __main__, drives, exact, ga_run, logging, row_column, sweep, textbook
 from benchmarks.measure import MAPS, SETTINGS, interleave, make_planner, make_problem, quartiles
 from gapath.problem import CornerCutting, PlanStatus, Problem
 from gapath.rng import stream
@@ -58,6 +61,70 @@ def test_the_exact_peers_agree_on_random_maps(problem):
     ours = costs.pop("gapath A*")
     # fixed point against floats: a weight is rounded by at most 1 / 131072
     assert list(costs.values()) == pytest.approx([ours] * 3, abs=problem.map.weights.size / 131072)
+
+
+def test_generations_are_timed_for_every_rival(monkeypatch):
+    monkeypatch.setattr(row_column, "ENLARGED", (1, 2))
+    rows = row_column.measure(quick=True)
+    assert [row["n"] for row in rows] == [10, 20]
+    for row in rows:
+        assert row["gapath epochs/s"].lower > 0 and row["gapath / twin"].lower > 0
+
+
+def test_another_evolution_is_noticed():
+    plan = make_planner("sedighi", max_epochs=2).plan(row_column.enlarged(1), stream(0))
+    row_column.check_identical(plan, [{"chromosome": plan.evolution.chromosomes[0].tolist()}])
+    with pytest.raises(RuntimeError, match="the twin's epochs are others"):
+        row_column.check_identical(plan, [{"chromosome": [0] * 22}])
+
+
+def test_without_deap_the_reason_is_stated(monkeypatch):
+    monkeypatch.setattr(row_column, "ENLARGED", (1,))
+    monkeypatch.setattr(row_column, "find_spec", lambda name: None)
+    (row,) = row_column.measure(quick=True)
+    assert row["DEAP epochs/s"] == "skipped: the bench extra is not installed"
+    assert "gapath / DEAP" not in row and "gapath / twin" in row
+
+
+@pytest.fixture
+def deap():
+    pytest.importorskip("deap", reason="the bench extra is not installed")
+    return import_module("benchmarks.row_column_deap")
+
+
+def by_the_twin(problem, chromosome):
+    points = naive_row_column.corners(chromosome, problem.start, problem.target)
+    return naive_row_column.measure(problem.map.weights, naive_row_column.walk(points))
+
+
+def test_individuals_of_deap_have_the_twins_fitness(deap):
+    problem, ga = row_column.enlarged(1), make_planner("sedighi", population=50)
+    population = [deap.make_individual(10, ga) for _ in range(50)]
+    deap.Rating(problem, ga)(population)
+    measures = []
+    for individual in population:
+        location, direction = map(list, zip(*individual, strict=True))
+        chromosome = naive_row_column.Chromosome(
+            individual.flag, location, direction[:-1], individual.switch
+        )
+        measures.append(by_the_twin(problem, chromosome))
+    values = [individual.fitness.values[0] for individual in population]
+    assert values == naive_row_column.fitness(measures, 1, 2)
+
+
+def test_deap_succeeds_as_often(deap):
+    """Other random numbers, the same algorithm: rates differ by at most three standard errors."""
+    problem, trials = make_problem("s04_sp03"), 80
+    ga = make_planner("sedighi", population=30, max_epochs=40)
+    ours = sum(ga.plan(problem, stream(0, trial)).feasible for trial in range(trials))
+    theirs = 0
+    for seed in range(trials):
+        (row,) = as_rows(deap.evolve(problem, ga, seed))
+        (obstacles, _), *_ = by_the_twin(problem, naive_row_column.Chromosome.of(row))
+        theirs += obstacles == 0
+    rate = (ours + theirs) / (2 * trials)
+    assert 0.1 < rate < 0.9
+    assert abs(ours - theirs) / trials < 3 * np.sqrt(2 * rate * (1 - rate) / trials)
 
 
 def test_quartiles_and_orders():
