@@ -75,7 +75,10 @@ def job(config: DictConfig) -> None:
         traceback.print_exc()
         fail(FAILED, sweep)
     else:
-        print(describe(run, outcome, short=sweep), flush=True)
+        try:
+            print(describe(run, outcome, short=sweep), flush=True)
+        except BrokenPipeError:  # gapath ... | head: the run is done, nobody reads on
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def command(overrides: list[str]) -> str:

@@ -319,3 +319,13 @@ def test_the_installed_command_works_from_anywhere(tmp_path):
     assert done.returncode == 0, done.stderr
     assert "bspline_ga" in done.stdout
     assert not list(tmp_path.iterdir())
+
+
+def test_a_summary_into_a_closed_pipe_is_no_error(tmp_path):
+    settings = ["map=kg18_test1", "planner=astar", "recorder=none", f"output={tmp_path}"]
+    command = [sys.executable, "-c", "from gapath.cli import main; main()", *settings]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        process.stdout.close()
+        assert process.stderr.read() == b""
+        assert process.wait() == 0
+    assert only(tmp_path / "plan").is_dir()
