@@ -190,7 +190,7 @@ def _blueprint(run: RunStarted, evolved: bool) -> rrb.Blueprint:
         curves = rrb.Horizontal(
             rrb.TimeSeriesView(
                 origin="fitness",
-                name="log10 of the fitness: best (orange), mean (grey)",
+                name="log10 of the cost, obstacles as VLN: best (orange), mean (grey)",
                 plot_legend=plain,
             ),
             rrb.TimeSeriesView(
