@@ -29,7 +29,15 @@ PAGES = [
     for page in sorted(ROOT.glob(pattern))
 ]
 PAPERS = (ROOT / "docs" / "papers.md").read_text("utf-8")
-SETTINGS = yaml.safe_load((ROOT / "conf" / "planner" / "bspline_ga.yaml").read_text("utf-8"))
+KG18, S04 = PAPERS.split("\n## S04")
+OF_PAPERS = pytest.mark.parametrize(
+    ("page", "name", "assumed"),
+    [
+        (KG18, "bspline_ga", "### What is assumed"),
+        (S04, "sedighi", "### What is assumed of S04"),
+    ],
+    ids=["kg18", "s04"],
+)
 
 each_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 
@@ -123,16 +131,22 @@ def test_a_name_that_does_not_exist_is_noticed(name):
     assert not exists(name)
 
 
-def test_every_setting_of_kg18_is_on_the_papers_page_with_its_default():
-    rows = re.findall(r"^\| `planner\.(\w+)` \| ([^|]+) \|", PAPERS, re.MULTILINE)
-    shown = {name: yaml.safe_load(value) for name, value in rows}
-    assert shown == {name: value for name, value in SETTINGS.items() if name != "kind"}
+def planner_yaml(name):
+    return (ROOT / "conf" / "planner" / f"{name}.yaml").read_text("utf-8")
 
 
-def test_what_is_assumed_in_the_yaml_is_assumed_on_the_papers_page():
-    text = (ROOT / "conf" / "planner" / "bspline_ga.yaml").read_text("utf-8")
-    yaml_says = set(re.findall(r"^(\w+): \S+ +# assumed", text, re.MULTILINE))
-    section = PAPERS.partition("### What is assumed")[2].partition("\n###")[0]
+@OF_PAPERS
+def test_every_setting_is_on_the_papers_page_with_its_default(page, name, assumed):
+    rows = re.findall(r"^\| `planner\.(\w+)` \| ([^|]+) \|", page, re.MULTILINE)
+    shown = {setting: yaml.safe_load(value) for setting, value in rows}
+    settings = yaml.safe_load(planner_yaml(name))
+    assert shown == {setting: value for setting, value in settings.items() if setting != "kind"}
+
+
+@OF_PAPERS
+def test_what_is_assumed_in_the_yaml_is_assumed_on_the_papers_page(page, name, assumed):
+    yaml_says = set(re.findall(r"^(\w+): \S+ +# assumed", planner_yaml(name), re.MULTILINE))
+    section = page.partition(f"{assumed}\n")[2].partition("\n###")[0]
     assert yaml_says == set(re.findall(r"^\| `planner\.(\w+)`", section, re.MULTILINE))
 
 
