@@ -81,9 +81,7 @@ def test_it_goes_straight_until_something_is_in_the_way():
     )
     assert steps[:seen] == [(x, 10) for x in range(seen)]  # straight on
     assert seen >= 15  # no sooner than it sees the obstacle
-    assert all(
-        abs(u - x) + abs(v - y) == 1 for (x, y), (u, v) in itertools.pairwise(steps)
-    )
+    assert all(abs(u - x) + abs(v - y) == 1 for (x, y), (u, v) in itertools.pairwise(steps))
 
 
 def test_it_turns_round_once_and_goes_home_without_news():
