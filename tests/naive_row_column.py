@@ -52,9 +52,8 @@ def vertices(chromosome, start, target):
         return [start]
     column_wise, places = chromosome.flag == 1, [start]
     for gene in range(1, n - 1):
-        for switch in chromosome.switch:
-            if switch == gene - 1:  # takes effect after its vertex
-                column_wise = not column_wise
+        if gene - 1 in chromosome.switch:  # takes effect after its vertex; two equal ones, once
+            column_wise = not column_wise
         location = chromosome.location[gene]
         places.append((gene, location) if column_wise else (location, gene))
     return [*places, target]

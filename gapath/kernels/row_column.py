@@ -50,7 +50,7 @@ class Chromosomes(NamedTuple):
     direction: NDArray[np.int32]
     """(n - 1, P) how vertex i is joined to the next: `HORIZONTAL` first, or 0."""
     switch: NDArray[np.int32]
-    """(2, P) the mode changes after these vertices; n - 1, or two equal ones: not at all."""
+    """(2, P) the mode changes after these vertices; n - 1: not at all, two equal ones: once."""
 
 
 class Sums(NamedTuple):
@@ -194,12 +194,13 @@ def decode(rows: NDArray[np.int32], ends: Ends) -> NDArray[np.int32]:
     for individual in range(rows.shape[0]):
         row, path = rows[individual], points[individual]
         x, y = ends.start_x, ends.start_y
+        first, second = row[2 * n], row[2 * n + 1]
         path[0, 0], path[0, 1] = x, y
         for i in range(1, n):
             u, v = ends.target_x, ends.target_y
             if i < n - 1:
                 # a switch at gene s takes effect after vertex s
-                column_wise = row[0] ^ (i > row[2 * n]) ^ (i > row[2 * n + 1])
+                column_wise = row[0] ^ (i > first) ^ (i > second and first != second)
                 u, v = (i, row[1 + i]) if column_wise else (row[1 + i], i)
             horizontal = row[n + i] == HORIZONTAL
             path[2 * i - 1, 0], path[2 * i - 1, 1] = (u, y) if horizontal else (x, v)
@@ -257,7 +258,7 @@ def _place(chromosomes: Chromosomes, i: int, walk: Walk) -> None:
     u, v = walk.there[0], walk.there[1]
     for p in range(location.shape[0]):
         # a switch at gene s takes effect after vertex s
-        mode = walk.mode[p] ^ np.int32(first[p] == i - 1) ^ np.int32(second[p] == i - 1)
+        mode = walk.mode[p] ^ (np.int32(first[p] == i - 1) | np.int32(second[p] == i - 1))
         walk.mode[p] = mode
         u[p] = i if mode else location[p]
         v[p] = location[p] if mode else i

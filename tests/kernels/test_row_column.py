@@ -70,8 +70,8 @@ COLUMN_WISE = [(y, x) for x, y in ROW_WISE]
         (1, [1, 3], COLUMN_WISE[:2] + ROW_WISE[2:4] + COLUMN_WISE[4:]),
         (0, [2, 5], ROW_WISE[:3] + COLUMN_WISE[3:]),
         (0, [5, 2], ROW_WISE[:3] + COLUMN_WISE[3:]),
-        (0, [2, 2], ROW_WISE),
-        (1, [3, 3], COLUMN_WISE),
+        (0, [2, 2], ROW_WISE[:3] + COLUMN_WISE[3:]),  # i = j, not n: one switching point
+        (1, [3, 3], COLUMN_WISE[:4] + ROW_WISE[4:]),
         (0, [0, 5], COLUMN_WISE),  # after the start, so from the first vertex on
         (0, [4, 5], ROW_WISE),  # after the last but one: only the target is left
     ],

@@ -35,7 +35,7 @@ def every_path(n, start, target):
                     flag, ends[:1] + locations + ends[1:], direction, [first, second]
                 )
                 fields = set(twin.walk(twin.corners(chromosome, start, target)))
-                switches = 0 if first == second else (first < n - 1) + (second < n - 1)
+                switches = len({first, second} - {n - 1})
                 found.append((flag, switches, sum(1 << (y * n + x) for x, y in fields)))
     return np.array(found, dtype=np.int64).T
 
