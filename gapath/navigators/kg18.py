@@ -16,6 +16,7 @@ from gapath.grid import SCALE, Field
 from gapath.kernels.field_of_view import remaining_cost
 from gapath.navigation import Call, Decision, Mode, Path, Query, StreamOf
 from gapath.past_path import simplified
+from gapath.problem import Planner
 from gapath.rng import fill, high
 
 A, B, C, DRAW = 0, 1, 2, 3  # numbers of the parts in random streams
@@ -89,6 +90,15 @@ class Navigator:
             "a number in [0, 1000]",
         )
         require(len(self.replan) > 0, f"{where}.replan", "nothing", "at least one planner")
+        named = {"retreat": self.retreat, "explore": self.explore}
+        named |= {f"replan[{i}]": planner for i, planner in enumerate(self.replan)}
+        for name, planner in named.items():
+            require(
+                isinstance(planner, Planner),
+                f"{where}.{name}",
+                planner,
+                "a mapping with base, the name of a planner's YAML",
+            )
 
     @property
     def complete(self) -> bool:

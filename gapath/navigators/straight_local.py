@@ -4,9 +4,10 @@ The robot goes straight to the target, in horizontal and vertical moves, until s
 the way; a planner leads it around that on a square subsection of the map; then it goes straight
 on.
 
-It never goes to and fro. Each detour ends nearer to the target, by the moves that are left, than
-it began, so that without a newly seen obstacle detours come to an end; and without having seen
-one since it last turned round it does not turn round again, but goes back to its start.
+On a map that does not change a drive ends. Each detour ends nearer to the target, by the moves
+that are left, than it began, so that without a newly seen obstacle detours come to an end; and
+without having seen one since it last turned round the robot does not turn round again, but goes
+back to its start.
 """
 
 from collections.abc import Iterator
@@ -22,7 +23,7 @@ from gapath.kernels.field_of_view import remaining_cost
 from gapath.kernels.row_column import MAX_SIDE
 from gapath.navigation import Call, Decision, Path, Query, StreamOf
 from gapath.past_path import Track
-from gapath.problem import CornerCutting, Plan
+from gapath.problem import CornerCutting, Particular, Plan, Planner
 
 
 class Memory(NamedTuple):
@@ -85,6 +86,15 @@ class Navigator:
             sides,
             f"at least one side, each from 2 to {MAX_SIDE}",
         )
+        require(
+            isinstance(self.planner, Planner),
+            "navigator.planner",
+            self.planner,
+            "a mapping with base, the name of a planner's YAML",
+        )
+        if isinstance(self.planner, Particular):
+            largest = Subsection(np.broadcast_to(np.int32(0), 2 * (max(sides),)), (0, 0))
+            self.planner.check(Around(largest, (0, 0), (0, 0), CornerCutting.ALLOW))
         interval = self.retreat_interval
         require(interval >= 1, "navigator.retreat_interval", interval, "an integer from 1 on")
 
@@ -111,6 +121,10 @@ class Navigator:
         blocked = table[line[:, 1], line[:, 0]] >= OBSTACLE
         if not blocked.any():
             return ahead.adopt(line).go_on()
+        first = int(np.argmax(blocked))
+        smallest = min(self.subsections)
+        if np.abs(line[first] - line[0]).max() >= smallest:  # known, but far away
+            return ahead.adopt(line[: max(2, first - smallest // 2)]).go_on()
         part, number = ("A", 0) if state.returning else ("C", 2)  # as KG18's parts
         calls: tuple[Call, ...] = ()
         for i, around in enumerate(subsections(query, line, blocked, self.subsections)):

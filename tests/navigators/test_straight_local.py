@@ -84,6 +84,18 @@ def test_it_goes_straight_until_something_is_in_the_way():
     assert all(abs(u - x) + abs(v - y) == 1 for (x, y), (u, v) in itertools.pairwise(steps))
 
 
+def test_a_known_obstacle_far_away_does_not_stop_it():
+    weights = np.full((20, 90), 0.5)
+    weights[8:13, 60] = 1.0
+    grid = GridMap("far", weights)
+    problem = Problem(grid, (0, 10), (89, 10))
+    going = navigator(subsections=[10, 20])
+    driven = drive(problem, going, SENSOR, STATIC, 0, 0, 500, 0.5, before=grid)
+    first = next(i for i, f in enumerate(driven.frames) if f.decision and f.decision.calls)
+    assert driven.frames[first - 1].place == (54, 10)  # five fields before it
+    assert driven.outcome is Outcome.REACHED
+
+
 def test_it_turns_round_once_and_goes_home_without_news():
     weights = np.full((30, 40), 0.5)
     weights[2:28, 20] = 1.0
@@ -100,8 +112,14 @@ def test_it_turns_round_once_and_goes_home_without_news():
         ("subsections", [1]),
         ("subsections", [10, 701]),
         ("retreat_interval", 0),
+        ("planner", 3),
     ],
 )
 def test_bad_settings(name, value):
     with pytest.raises(InputError, match=rf"navigator\.{name}"):
         navigator(**{name: value})
+
+
+def test_a_planner_that_needs_too_much_memory_on_the_largest_square_is_refused():
+    with pytest.raises(InputError, match=r"planner\.max_epochs: .* GiB"):
+        navigator(planner={"base": "sedighi", "max_epochs": 10**6}, subsections=[10, 700])
