@@ -115,6 +115,7 @@ class Planner:
         n = max(grid.rows, grid.cols)
         require(n <= MAX_SIDE, "map", f"{n} fields a side", f"at most {MAX_SIDE} for this planner")
         needed = 4 * (2 * n + 2) * (2 * self.population + self.max_epochs)
+        needed += 8 * (n + 3) * self.population + 8 * (2 * n + 5) * self.max_epochs
         require(
             needed <= MAX_BYTES,
             "planner.population, planner.max_epochs",

@@ -182,5 +182,5 @@ def test_what_needs_too_much_memory_is_refused():
     for ga, sides in ((planner(), (side, side)), (planner(pad_to_square=True), (1, side))):
         with pytest.raises(InputError, match=f"^map: got {side} fields a side, expected at most"):
             ga.check(problem_of(*sides))
-    with pytest.raises(InputError, match=r"^planner.population, planner.max_epochs: .*: 5.2 GiB"):
+    with pytest.raises(InputError, match=r"^planner.population, planner.max_epochs: .*: 15.7 GiB"):
         planner(max_epochs=10**6).check(problem_of(MAX_SIDE, MAX_SIDE))
