@@ -78,6 +78,8 @@ def _row(grid: GridMap, start: Field | None, target: Field | None) -> dict[str, 
     side = max(grid.rows, grid.cols)
     require(side <= MAX_SIDE, f"map {grid.name}", f"{side} fields a side", f"at most {MAX_SIDE}")
     found = classify(problem)
+    any_path = shortest_path(problem).feasible
+    switches = str(found.switches) if found.switches is not None else "more" if any_path else "-"
 
     def say(yes: bool) -> str:
         return "yes" if yes else "no"
@@ -87,10 +89,10 @@ def _row(grid: GridMap, start: Field | None, target: Field | None) -> dict[str, 
         "fields": f"{grid.cols} x {grid.rows}",
         "from": f"{start[0]},{start[1]}",
         "to": f"{target[0]},{target[1]}",
-        "any path": say(shortest_path(problem).feasible),
+        "any path": say(any_path),
         "row-wise": say(found.row_wise),
         "column-wise": say(found.column_wise),
-        "switches": "more" if found.switches is None else str(found.switches),
+        "switches": switches,
         "geisler": say(found.row_wise),
         "hermanu": say(found.row_wise or found.column_wise),
         "sedighi": say(found.switches is not None),
