@@ -1,5 +1,6 @@
 """S04 Figs 9 and 10: the search spaces with resulting paths, from the logs."""
 
+import math
 from collections import defaultdict
 from collections.abc import Sequence
 
@@ -9,7 +10,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from gapath.errors import InputError
-from gapath.events import Evolved, RunStarted, TrialFinished
+from gapath.events import Evolved, RunStarted
 from gapath.kernels.raster import polyline
 from gapath.recorders.mcap import FILE, read_events
 
@@ -17,31 +18,41 @@ from .figures import Look, looks, panels, render, style
 from .map_picture import draw_map, mark_ends
 from .names import label, rank
 from .runs import Run
+from .s04_runs import planner_and_form
 from .section import RECONSTRUCTED, Figure, Section
 
 TASK = "plan"
 EXPERIMENT = "s04_table1"
-ORDER = 32
+ORDER = 82
 
 PER_FIGURE = 4
 
 
 class Best:
-    """The best path of a run: the feasible one of fewest turns, else the last fittest one."""
+    """The best of a run's last paths: of fewest collisions, then turns, then steps."""
 
     def __init__(self, start: RunStarted) -> None:
         self.start = start
         self.path: NDArray[np.int32] | None = None
-        self.feasible = False
-        self._key = (2, 0, 0)
+        self._key = (math.inf, 0, 0)
 
-    def offer(self, path: NDArray[np.int32], feasible: bool) -> None:
-        """Take a path if it is better: feasible, then of fewer turns, then shorter."""
+    def offer(self, path: NDArray[np.int32]) -> None:
+        """Take a path if it is better."""
         steps = np.diff(path, axis=0)
         turns = int((steps[1:] != steps[:-1]).any(axis=1).sum())
-        key = (0 if feasible else 1, turns, len(path))
+        key = (len(collisions(self.start, path)), turns, len(path))
         if key < self._key:
-            self._key, self.path, self.feasible = key, path, feasible
+            self._key, self.path = key, path
+
+
+def collisions(start: RunStarted, path: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Give the fields of a path that are obstacles or outside the map, (n, 2)."""
+    grid = start.problem.map
+    x, y = path.T
+    inside = (x >= 0) & (x < grid.cols) & (y >= 0) & (y < grid.rows)
+    hit = ~inside
+    hit[inside] = grid.obstacles[y[inside], x[inside]]
+    return path[hit]
 
 
 def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
@@ -69,7 +80,7 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
         except InputError as error:
             skipped.append((run.name, str(error)))
         else:
-            planner = run.manifest["planner"].partition("[")[0]
+            planner = planner_and_form(run.manifest["planner"])[0]
             found[run.manifest["map"]].setdefault(planner, best)
     names = sorted(found, key=rank)
     if not names and not skipped:
@@ -82,10 +93,10 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
     return Section(
         title="S04's search spaces and resulting paths",
         text=(
-            "The best path of each planner's runs: of those without a collision the one with the "
-            "fewest turns. Where a planner has none, its fittest path is drawn, with the obstacles "
-            "that it runs into: as the paper's Fig. 9 shows Hermanu's planner on SPSet07 and "
-            "SPSet08.",
+            "The best of the paths with which each planner's runs ended: the one with the fewest "
+            "collisions, then turns, then steps. Where a planner has none without a collision, the "
+            "obstacles that it runs into are marked: as in the paper's Fig. 9, where Hermanu's "
+            "planner stands beside the proposed one on SPSet07 and SPSet08.",
             RECONSTRUCTED,
         ),
         figures=figures,
@@ -115,13 +126,10 @@ def read_best(run: Run) -> Best:
     start = next(events, None)
     if not isinstance(start, RunStarted):
         raise InputError(FILE, type(start).__name__, "RunStarted as the first event")
-    best, fittest = Best(start), None
+    best = Best(start)
     for event in events:
         if isinstance(event, Evolved):
-            fittest = polyline(event.evolution.way_points[-1])
-        elif isinstance(event, TrialFinished) and fittest is not None:
-            feasible = len(event.path) > 0
-            best.offer(event.path if feasible else fittest, feasible)
+            best.offer(polyline(event.evolution.way_points[-1]))
     return best
 
 
@@ -142,10 +150,9 @@ def _figure(
                     continue
                 aside = shift * (list(look).index(planner) - (len(look) - 1) / 2)
                 panel.plot(*(best.path + aside).T, color=color, linestyle=dashes, linewidth=1.3)
-                x, y = best.path.T
-                hit = best.path[grid.obstacles[y, x]]
+                hit = collisions(start, best.path)
                 panel.plot(*hit.T, "x", color=color, markersize=4)
-                kind = "free" if best.feasible else f"{len(hit)} fields in obstacles"
+                kind = f"{len(hit)} fields in obstacles" if len(hit) else "free"
                 sentences.append(f"{label(name)}, {label(planner)}: {kind}.")
             mark_ends(panel, start.problem)
             panel.set(xticks=[], yticks=[])

@@ -111,13 +111,19 @@ def _paper(row: pd.Series) -> str:
 
 def _remarks(rows: pd.DataFrame) -> tuple[str, ...]:
     remarks = [text for name in rows["map"].unique() for text in _winners(rows, name)]
+    if "sedighi" in set(rows["navigator"]):
+        remarks.append(
+            "Sedighi 2004 is the local planning of another paper: straight on, and around what is "
+            "in the way on a square subsection. Its robot moves horizontally and vertically only, "
+            "while the shortest path here may go diagonally."
+        )
     remarks += [
         "The rivals are compiled with the same care as the genetic algorithm, use the same sensor, "
         "the same map updates and the same count of steps; only the decisions differ. Who draws no "
         "random numbers drives the same way each time, so its rates have no interval.",
         "Where the target can be reached an exact planner finds a path on every known map, as "
-        "unknown fields count as free: each return of KG18 on such a map is a miss of its genetic "
-        "algorithm.",
+        "unknown fields count as free: each return on such a map, KG18's or Sedighi's, is a miss "
+        "of a genetic algorithm.",
         "The paper's seconds and ours cannot be compared as machines go; its maps are lost, and "
         "those here are others of the same classes.",
     ]

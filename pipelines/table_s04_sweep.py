@@ -8,26 +8,27 @@ from gapath.components import yaml_values
 
 from .figures import legend as draw_legend
 from .figures import looks, panels, render, style
-from .names import label, rank
+from .names import label, rank, split
 from .runs import Run
-from .s04 import RUNS, paper_successes
+from .s04 import PLANNERS, RUNS, paper_successes
+from .s04_runs import planner_and_form
 from .section import RECONSTRUCTED, Figure, Section, Table
 from .statistics import wilson
 from .text import number, percent
 
 TASK = "plan"
 EXPERIMENT = "s04_sweep"
-ORDER = 34
+ORDER = 84
 
 SWEPT = {
     "population": "Population",
-    "mutation_probability": "Mutation",
-    "crossover_probability": "Crossover",
+    "mutation_probability": "Mutation probability",
+    "crossover_probability": "Crossover probability",
 }
 """The settings of the sweep."""
 
 
-def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
+def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
     """Make the section on the sweep.
 
     Parameters
@@ -39,10 +40,14 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
 
     Returns
     -------
-    Section
-        A table with a row a setting, and a figure.
+    Section or None
+        A table with a row a setting, and a figure a swept setting; None without a cell of the
+        paper's.
     """
     cells = rate_cells(trials)
+    if cells.empty:
+        return None
+    others = sorted(name for name in trials["planner"].unique() if swept_settings(name) is None)
     rows = rate_settings(cells)
     return Section(
         title="S04: how success depends on population, mutation and crossover",
@@ -52,12 +57,18 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
             RECONSTRUCTED,
         ),
         tables=(_table(rows),),
-        figures=(_figure(cells),),
-        remarks=(_nearest(rows, cells),),
+        figures=tuple(_figure(cells, name) for name in SWEPT if len(set(cells[name])) > 1),
+        remarks=(
+            _nearest(rows, cells),
+            f"A rate of {number(cells['n'].median())} runs is itself uncertain by up to "
+            f"{number(100 * _half_width(int(cells['n'].median())))} percentage points (95 % Wilson "
+            "interval), so settings next to one another in the table differ by chance as well.",
+        ),
+        skipped=tuple((name, "differs in a setting that is not swept") for name in others),
     )
 
 
-def swept_settings(name: str) -> tuple[str, dict[str, float]]:
+def swept_settings(name: str) -> tuple[str, dict[str, float]] | None:
     """Read what a planner's name says of its settings.
 
     Parameters
@@ -67,15 +78,15 @@ def swept_settings(name: str) -> tuple[str, dict[str, float]]:
 
     Returns
     -------
-    planner : str
-        The name of its YAML.
-    settings : dict of str to float
-        Those of `SWEPT`; what the name leaves out is as in the YAML.
+    (str, dict) or None
+        The name of its YAML, and the values of `SWEPT`; what the name leaves out is as in the
+        YAML. None if it differs in something else as well.
     """
-    planner, _, changes = name.rstrip("]").partition("[")
-    given = dict(change.split("=") for change in changes.split(",") if change)
-    values = yaml_values("planner", planner) | given
-    return planner, {setting: float(values[setting]) for setting in SWEPT}
+    base, changes = split(planner_and_form(name)[0])
+    if base not in PLANNERS or not set(changes) <= set(SWEPT):
+        return None
+    values = yaml_values("planner", base) | changes
+    return base, {setting: float(values[setting]) for setting in SWEPT}
 
 
 def rate_cells(trials: pd.DataFrame) -> pd.DataFrame:
@@ -94,10 +105,10 @@ def rate_cells(trials: pd.DataFrame) -> pd.DataFrame:
     """
     rows = []
     for (name, method), group in trials.groupby(["map", "planner"]):
-        paper = paper_successes(name, method)
-        if paper is None:
+        paper, swept = paper_successes(name, method), swept_settings(method)
+        if paper is None or swept is None:
             continue
-        planner, settings = swept_settings(method)
+        planner, settings = swept
         low, high = wilson(paper / RUNS, RUNS)
         success = group["feasible"].mean()
         rows.append(
@@ -137,6 +148,11 @@ def rate_settings(cells: pd.DataFrame) -> pd.DataFrame:
     return rows.reset_index().sort_values(["inside", "off"], ascending=[False, True])
 
 
+def _half_width(n: int) -> float:
+    low, high = wilson(0.5, n)
+    return (high - low) / 2
+
+
 def _table(rows: pd.DataFrame) -> Table:
     shown = [
         {
@@ -173,7 +189,7 @@ def _nearest(rows: pd.DataFrame, cells: pd.DataFrame) -> str:
     )
 
 
-def _figure(cells: pd.DataFrame) -> Figure:
+def _figure(cells: pd.DataFrame, setting: str) -> Figure:
     names = sorted(set(cells["map"]), key=rank)
     look = looks(cells["planner"])
     sentences = []
@@ -185,7 +201,7 @@ def _figure(cells: pd.DataFrame) -> Figure:
                 mine = here[here["planner"] == planner]
                 if mine.empty:
                     continue
-                spread = mine.groupby("population")["success"].agg(["min", "mean", "max"]) * 100
+                spread = mine.groupby(setting)["success"].agg(["min", "mean", "max"]) * 100
                 panel.plot(spread.index, spread["mean"], color=color, linestyle=dashes)
                 panel.fill_between(
                     spread.index, spread["min"], spread["max"], color=color, alpha=0.15, linewidth=0
@@ -197,15 +213,15 @@ def _figure(cells: pd.DataFrame) -> Figure:
             panel.set_title(label(name))
             panel.set(ylim=(-4, 104))
         draw_legend(canvas, look)
-        canvas.supxlabel("population")
+        canvas.supxlabel(SWEPT[setting].lower())
         canvas.supylabel("found, %")
         svg, png = render(canvas)
     return Figure(
-        "s04_sweep",
-        "Success by population on the search spaces (reconstructed): the mean over the swept "
-        "mutation and crossover probabilities, shaded from the least to the greatest.",
-        "Panels, one a search space, with a curve for each planner from the smallest population "
-        "to the largest. " + " ".join(sentences),
+        f"s04_sweep_{setting}",
+        f"Success by {SWEPT[setting].lower()} on the search spaces (reconstructed): the mean over "
+        "the other two settings swept, shaded from the least to the greatest.",
+        f"Panels, one a search space, with a curve for each planner from the least "
+        f"{SWEPT[setting].lower()} to the greatest. " + " ".join(sentences),
         svg,
         png,
     )

@@ -1,5 +1,6 @@
 import math
 
+import numpy as np
 import pandas as pd
 import pytest
 from gapath.pipelines import figure_s04_paths, table_s04, table_s04_sweep
@@ -50,16 +51,18 @@ def test_a_cell_worked_by_hand():
     )
     (row,) = table_s04.summarise_cells(frame).to_dict("records")
     assert (row["planner"], row["n"], row["found"], row["success"]) == ("sedighi", 100, 50, 0.5)
-    assert (row["fifteen_n"], row["fifteen_found"], row["paper"]) == (15, 6, 13)
+    assert (row["few_n"], row["few_found"], row["paper"]) == (15, 6, 13)
     assert (row["paper_low"], row["paper_high"]) == wilson(13 / 15, 15)
     assert not row["inside"]  # 50 % lies below 62 %
     assert not row["paper_inside"]  # 86.7 % lies above 64 %
     section = table_s04.section(frame, [])
     (shown,) = section.tables[0].shown.to_dict("records")
     assert shown["Search space"] == "SPSet07 (reconstructed)"
-    assert (shown["Paper, %"], shown["15 runs, %"], shown["Found, %"]) == ("86.7", "40", "50")
+    assert (shown["Paper, %"], shown["At the end, %"], shown["Found, %"]) == ("86.7", "40", "50")
     assert (shown["Paper inside"], shown["Inside the paper's"]) == ("no", "no")
     assert "0 of 1 cells" in section.remarks[0] and "SPSet07 (50 %)" in section.remarks[0]
+    assert "0 of the 1 in which the paper has more than 0 %" in section.remarks[0]
+    assert "In 0 of 1 cells the paper's rate lies" in section.remarks[1]
 
 
 def test_a_cell_that_agrees_and_seeds_alone():
@@ -67,8 +70,30 @@ def test_a_cell_that_agrees_and_seeds_alone():
     section = table_s04.section(frame, [])
     (shown,) = section.tables[0].shown.to_dict("records")
     assert shown["Inside the paper's"] == "yes"
-    assert shown["15 runs, %"] == shown["Paper inside"] == "\N{EN DASH}"
-    assert "1 of 1 cells lie in the paper's interval." in section.remarks[0]
+    assert shown["At the end, %"] == shown["Paper inside"] == "\N{EN DASH}"
+    assert "1 of 1 cells lie in the paper's interval, 1 of the 1" in section.remarks[0]
+
+
+def test_long_runs_alone():
+    section = table_s04.section(trials("sedighi", 14, 15), [])
+    (shown,) = section.tables[0].shown.to_dict("records")
+    assert (shown["At the end, %"], shown["Paper inside"]) == ("93.3", "yes")
+    assert shown["Found, %"] == shown["Inside the paper's"] == "\N{EN DASH}"
+    assert "In 1 of 1 cells" in section.remarks[0]
+
+
+def test_other_settings_are_cells_of_their_own():
+    frame = pd.concat(
+        [
+            trials("sedighi[corner_cutting=no_diagonals,stop_when_feasible=True]", 80, 100),
+            trials("sedighi[population=50,stop_when_feasible=True]", 10, 100),
+            trials("sedighi[population=50]", 1, 15),
+        ]
+    )
+    rows = table_s04.summarise_cells(frame)
+    assert list(rows["planner"]) == ["sedighi", "sedighi[population=50]"]
+    assert list(rows["found"]) == [80, 10]
+    assert rows["few_n"].fillna(0).tolist() == [0, 15]
 
 
 def test_a_path_that_was_found_and_lost_is_counted():
@@ -80,7 +105,8 @@ def test_a_path_that_was_found_and_lost_is_counted():
 
 def test_a_swept_setting_is_read_from_the_name():
     plain = yaml_values("planner", "sedighi")
-    planner, settings = table_s04_sweep.swept_settings(
+    swept = table_s04_sweep.swept_settings
+    planner, settings = swept(
         "hermanu[corner_cutting=no_diagonals,mutation_probability=0.005,population=50]"
     )
     assert planner == "hermanu"
@@ -89,7 +115,9 @@ def test_a_swept_setting_is_read_from_the_name():
         "mutation_probability": 0.005,
         "crossover_probability": plain["crossover_probability"],
     }
-    assert table_s04_sweep.swept_settings("geisler")[1]["population"] == plain["population"]
+    assert swept("geisler")[1]["population"] == plain["population"]
+    assert swept("sedighi[turns_weight=1]") is None
+    assert swept("astar") is None
 
 
 def test_the_nearest_setting_comes_first():
@@ -110,7 +138,10 @@ def test_the_nearest_setting_comes_first():
     assert list(rows["off"]) == pytest.approx([0, 1 - high, low - 0.4])
     section = table_s04_sweep.section(frame, [])
     assert "population 100" in section.remarks[0] and "2 of 2 cells" in section.remarks[0]
-    assert section.figures[0].png.startswith(b"\x89PNG")
+    (figure,) = section.figures  # only what was varied
+    assert figure.name == "s04_sweep_population" and figure.png.startswith(b"\x89PNG")
+    assert "50 runs" in section.remarks[1]
+    assert table_s04_sweep.section(trials("astar", 5, 5), []) is None
 
 
 @pytest.fixture(scope="module")
@@ -137,14 +168,22 @@ def test_the_best_path_of_a_run_is_free_and_has_the_fewest_turns(outputs):
     for run in find_runs(outputs):
         best = figure_s04_paths.read_best(run)
         mine = frame[frame["map"] == run.manifest["map"]]
-        assert best.feasible == mine["feasible"].any()
-        if best.feasible:
+        hit = figure_s04_paths.collisions(best.start, best.path)
+        assert (len(hit) == 0) == mine["feasible"].any()
+        if not len(hit):
             steps = best.path[1:] - best.path[:-1]
             turns = (steps[1:] != steps[:-1]).any(axis=1).sum()
             assert turns == mine.loc[mine["feasible"], "turns"].min()
-        else:
-            x, y = best.path.T
-            assert best.start.problem.map.obstacles[y, x].any()
+
+
+def test_collisions_are_obstacles_and_what_lies_outside(outputs):
+    (start,) = (
+        figure_s04_paths.read_best(run).start
+        for run in find_runs(outputs)
+        if run.manifest["map"] == "s04_sp07"
+    )
+    path = np.array([[-1, 0], [0, 0], [0, 2], [9, 10], [9, 9]])
+    assert figure_s04_paths.collisions(start, path).tolist() == [[-1, 0], [0, 2], [9, 10]]
 
 
 def test_search_spaces_are_drawn_from_logs(outputs, tmp_path):
