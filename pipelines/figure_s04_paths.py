@@ -23,7 +23,7 @@ from .section import RECONSTRUCTED, Figure, Section
 
 TASK = "plan"
 EXPERIMENT = "s04_table1"
-ORDER = 82
+ORDER = 87
 
 PER_FIGURE = 4
 

@@ -15,7 +15,7 @@ from .text import NOTHING, middle, number, percent, percent_range, span
 
 TASK = "plan"
 EXPERIMENT = "s04_table1"
-ORDER = 80
+ORDER = 86
 
 _BY = ["map", "map_source", "planner"]
 

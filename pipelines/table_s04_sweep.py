@@ -18,7 +18,7 @@ from .text import number, percent
 
 TASK = "plan"
 EXPERIMENT = "s04_sweep"
-ORDER = 84
+ORDER = 88
 
 SWEPT = {
     "population": "Population",
