@@ -121,10 +121,6 @@ class Navigator:
         blocked = table[line[:, 1], line[:, 0]] >= OBSTACLE
         if not blocked.any():
             return ahead.adopt(line).go_on()
-        first = int(np.argmax(blocked))
-        smallest = min(self.subsections)
-        if np.abs(line[first] - line[0]).max() >= smallest:  # known, but far away
-            return ahead.adopt(line[: max(2, first - smallest // 2)]).go_on()
         part, number = ("A", 0) if state.returning else ("C", 2)  # as KG18's parts
         calls: tuple[Call, ...] = ()
         for i, around in enumerate(subsections(query, line, blocked, self.subsections)):
@@ -132,6 +128,10 @@ class Navigator:
             calls = (*calls, Call(part, i, on_map(plan, around), plan.feasible))
             if plan.feasible:
                 return ahead.adopt(calls[-1].plan.path).go_on(calls)
+        first, nearest = int(np.argmax(blocked)), min(self.subsections)
+        far = np.abs(line[first] - line[0]).max() >= nearest
+        if far and not calls and not state.returning:  # it is known, but no square reaches it yet
+            return ahead.adopt(line[: max(2, first - nearest // 2)]).go_on()
         return replace(state, memory=Memory(memory.learnt, passed=1)).go_back(calls)
 
 

@@ -92,7 +92,7 @@ def test_a_known_obstacle_far_away_does_not_stop_it():
     going = navigator(subsections=[10, 20])
     driven = drive(problem, going, SENSOR, STATIC, 0, 0, 500, 0.5, before=grid)
     first = next(i for i, f in enumerate(driven.frames) if f.decision and f.decision.calls)
-    assert driven.frames[first - 1].place == (54, 10)  # five fields before it
+    assert driven.frames[first - 1].place == (54, 10)  # five fields before it, as no square of 20
     assert driven.outcome is Outcome.REACHED
 
 
