@@ -17,7 +17,7 @@ OWN := drive_choices s04_sweep
 OTHERS := $(filter-out $(TIMED) $(OWN),$(basename $(notdir $(wildcard conf/experiment/*.yaml))))
 
 .PHONY: paper
-paper: $(VENV)/ready ## do every published experiment and build the report (about five minutes)
+paper: $(VENV)/ready ## do every published experiment and build the report (about eight minutes)
 	@for name in $(TIMED); do \
 	  echo "experiment $$name"; $(BIN)/gapath experiment=$$name output="$(OUTPUT)" || exit $$?; \
 	done
