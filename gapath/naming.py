@@ -75,6 +75,8 @@ def _title(path: str) -> str:
 
 def _with_changes(name: str, given: Mapping[str, object], usual: Mapping[str, object]) -> str:
     changed = [f"{key}={value}" for key, value in given.items() if usual.get(key) != value]
+    gone = [key for key in usual if key not in given and "[" in key]  # of a list that is shorter
+    changed += [f"{key}=none" for key in gone]
     return f"{name}[{','.join(sorted(changed))}]" if changed else name
 
 

@@ -34,3 +34,18 @@ def test_what_is_known_beforehand_is_named_by_its_folder():
     config = {"task": "drive", "navigator": yaml_values("navigator", "kg18"), "drive": drive}
     name = method_name(config | {"corner_cutting": "allow"}, {"navigator": "kg18"})
     assert name == "kg18[known_map=office_without_rooms]"
+
+
+@pytest.mark.parametrize(
+    ("sides", "expected"),
+    [
+        ([10, 20, 40], "sedighi"),
+        ([10], "sedighi[subsections[1]=none,subsections[2]=none]"),
+        ([10, 20, 40, 80], "sedighi[subsections[3]=80]"),
+        ([10, 15], "sedighi[subsections[1]=15,subsections[2]=none]"),
+    ],
+)
+def test_a_list_that_is_shorter_is_another(sides, expected):
+    navigator = yaml_values("navigator", "sedighi") | {"subsections": sides}
+    config = {"task": "drive", "navigator": navigator, "drive": {"known_map": None}}
+    assert method_name(config | {"corner_cutting": "allow"}, {"navigator": "sedighi"}) == expected
