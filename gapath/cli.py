@@ -47,7 +47,9 @@ class SweepCheck(Callback):  # type: ignore[misc]
             parser = OverridesParser.create(config_loader=loader)
             parsed = parser.parse_overrides([*given, *config.hydra.overrides.task])
             for overrides in BasicSweeper.split_arguments(parsed, None)[0]:
-                make_run(compose("config", overrides=overrides), "")
+                config = compose("config", overrides=overrides)
+                check_used(overrides, config.task)
+                make_run(config, "")
         except Exception as error:
             sys.exit(complain(error))
         # Hydra would compose every job once more, only to see whether it can be composed.
@@ -67,6 +69,7 @@ def job(config: DictConfig) -> None:
     overrides = list(hydra.overrides.task)
     try:
         plain: Any = OmegaConf.to_container(config)
+        check_used(overrides, config.task)
         run = make_run(config, method_name(plain, hydra.runtime.choices))
         outcome = execute(run, command(overrides))
     except BAD_CONFIGURATION as error:
@@ -79,6 +82,16 @@ def job(config: DictConfig) -> None:
             print(describe(run, outcome, short=sweep), flush=True)
         except BrokenPipeError:  # gapath ... | head: the run is done, nobody reads on
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def check_used(overrides: list[str], task: str) -> None:
+    """Raise InputError if something was set on the command line that the task does not use."""
+    unused = {"plan": ("navigator", "drive"), "drive": ("planner",)}
+    for override in overrides:
+        key = override.partition("=")[0].lstrip("+~")
+        if key.partition(".")[0] in unused.get(task, ()):
+            other = "drive" if task == "plan" else "plan"
+            raise InputError(key, f"task={task}, which does not use it", f"task={other}")
 
 
 def command(overrides: list[str]) -> str:
