@@ -19,8 +19,9 @@ from gapath.problem import Plan, Problem
 from gapath.task import Batch, Trial
 from gapath.world import Changes
 
-WARM_UP = 20
-"""Steps of a drive that is thrown away: it compiles the kernels before the clock runs."""
+WARM_UP = 100
+"""Steps of a drive that is thrown away: it meets an obstacle, so that the kernels are compiled
+before the clock runs."""
 
 
 @dataclass(frozen=True)
@@ -118,7 +119,7 @@ class DriveTask:
                 "outcome": row.outcome,
                 "steps": row.steps,
                 "shortest": f"{row.shortest_steps:g} steps possible",
-                "ratio": f"{row.steps_ratio:.3g}",
+                "ratio": f"{row.steps_ratio:.3g}" if row.reached else "-",
                 "GA calls": f"{row.ga_calls} (A {row.calls_a}, B {row.calls_b}, C {row.calls_c})",
                 "replans": row.replans,
                 "returns": row.returns,

@@ -149,7 +149,7 @@ def _effort(row: PlanRow) -> dict[str, object]:
     if row.status == "infeasible":
         return {"reason": PlanStatus.INFEASIBLE.sentence}
     lines: dict[str, object] = {
-        "cost" if row.feasible else "best fitness": f"{row.cost:g}",
+        "cost" if row.feasible else "best cost": f"{row.cost:g}",
         "optimal cost": f"{row.optimal_cost:g}",
     }
     if row.epochs:
