@@ -19,7 +19,7 @@ from .map_picture import draw_map, mark_ends
 from .names import label, rank
 from .runs import Run
 from .s04_runs import planner_and_form
-from .section import RECONSTRUCTED, Figure, Section
+from .section import DRAWN, Figure, Section
 
 TASK = "plan"
 EXPERIMENT = "s04_table1"
@@ -97,7 +97,7 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
             "collisions, then turns, then steps. Where a planner has none without a collision, the "
             "obstacles that it runs into are marked: as in the paper's Fig. 9, where Hermanu's "
             "planner stands beside the proposed one on SPSet07 and SPSet08.",
-            RECONSTRUCTED,
+            DRAWN,
         ),
         figures=figures,
         skipped=tuple(skipped),
@@ -151,12 +151,12 @@ def _figure(
                 aside = shift * (list(look).index(planner) - (len(look) - 1) / 2)
                 panel.plot(*(best.path + aside).T, color=color, linestyle=dashes, linewidth=1.3)
                 hit = collisions(start, best.path)
-                panel.plot(*hit.T, "x", color=color, markersize=4)
+                panel.plot(*(hit + aside).T, "x", color=color, markersize=4)
                 kind = f"{len(hit)} fields in obstacles" if len(hit) else "free"
                 sentences.append(f"{label(name)}, {label(planner)}: {kind}.")
             mark_ends(panel, start.problem)
             panel.set(xticks=[], yticks=[])
-            panel.set_title(label(name))
+            panel.set_title(label(name, grid.source))
         handles = [
             Line2D([], [], color=color, linestyle=dashes, label=label(planner))
             for planner, (color, dashes) in look.items()

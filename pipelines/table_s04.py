@@ -8,7 +8,7 @@ from .names import label, rank
 from .runs import Run
 from .s04 import RUNS, paper_successes
 from .s04_runs import with_form
-from .section import RECONSTRUCTED, Section, Table
+from .section import DRAWN, Section, Table
 from .statistics import Interval, wilson
 from .summary import Spread, summarise_by
 from .text import NOTHING, middle, number, percent, percent_range, span
@@ -43,7 +43,7 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
             "horizontal and vertical moves. Geisler's chromosomes go row by row, Hermanu's row by "
             "row or column by column, Sedighi's may change between the two, twice at most. 15 runs "
             "as in the paper take every generation; a thousand seeds end at their first path.",
-            RECONSTRUCTED,
+            DRAWN,
         ),
         tables=(_beside_the_paper(rows), _effort(rows)),
         remarks=_remarks(rows, lost(trials)),
@@ -134,15 +134,15 @@ def _beside_the_paper(rows: pd.DataFrame) -> Table:
             {
                 **_names(row),
                 "Paper, %": percent(row["paper"] / RUNS) if known else NOTHING,
-                "Its 95 % interval": percent_range((row["paper_low"], row["paper_high"])),
+                "Paper: 95 %": percent_range((row["paper_low"], row["paper_high"])),
                 "Runs": number(few),
-                "At the end, %": NOTHING if pd.isna(few) else percent(row["few_found"] / few),
-                "95 % interval": percent_range((row["few_low"], row["few_high"])),
-                "Paper inside": _say(row["paper_inside"]) if both else NOTHING,
+                "Runs: at the end, %": NOTHING if pd.isna(few) else percent(row["few_found"] / few),
+                "Runs: 95 %": percent_range((row["few_low"], row["few_high"])),
+                "Paper in runs'": _say(row["paper_inside"]) if both else NOTHING,
                 "Seeds": number(row["n"]),
-                "Found, %": NOTHING if pd.isna(row["n"]) else percent(row["success"]),
-                "95 % interval of it": percent_range((row["success_low"], row["success_high"])),
-                "Inside the paper's": _say(row["inside"])
+                "Seeds: found, %": NOTHING if pd.isna(row["n"]) else percent(row["success"]),
+                "Seeds: 95 %": percent_range((row["success_low"], row["success_high"])),
+                "Seeds in paper's": _say(row["inside"])
                 if known and not pd.isna(row["n"])
                 else NOTHING,
             }
@@ -207,8 +207,8 @@ def _remarks(rows: pd.DataFrame, lost_of_found: tuple[int, int]) -> tuple[str, .
     remarks += [
         "Where the paper has 0 % no chromosome has a free path, which dynamic programming proves "
         "(gapath-genotype): these cells could not but agree.",
-        f"{lost_of_found[0]} of {lost_of_found[1]} runs of every generation had found a path and "
-        "lost it again: fitness is relative to the population, and there a path with a collision "
+        f"Of {lost_of_found[1]} runs of every generation that found a path {lost_of_found[0]} lost "
+        "it again: fitness is relative to the population, and there a path with a collision "
         "can be fitter than a free one that is the longest and has the most turns.",
         "Fifteen runs say little: 15 of 15 leaves anything from 79.6 % on possible, 8 of 15 "
         "anything from 30 % to 75 % (95 % Wilson interval).",

@@ -12,7 +12,7 @@ from .names import label, rank, split
 from .runs import Run
 from .s04 import PLANNERS, RUNS, paper_successes
 from .s04_runs import planner_and_form
-from .section import RECONSTRUCTED, Figure, Section, Table
+from .section import DRAWN, Figure, Section, Table
 from .statistics import wilson
 from .text import number, percent
 
@@ -54,7 +54,7 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
         text=(
             "The paper gives none of them. Swept is the range of neighbouring work of its group; "
             "each run ends at its first feasible path.",
-            RECONSTRUCTED,
+            DRAWN,
         ),
         tables=(_table(rows),),
         figures=tuple(_figure(cells, name) for name in SWEPT if len(set(cells[name])) > 1),

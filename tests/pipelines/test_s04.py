@@ -58,8 +58,12 @@ def test_a_cell_worked_by_hand():
     section = table_s04.section(frame, [])
     (shown,) = section.tables[0].shown.to_dict("records")
     assert shown["Search space"] == "SPSet07 (reconstructed)"
-    assert (shown["Paper, %"], shown["At the end, %"], shown["Found, %"]) == ("86.7", "40", "50")
-    assert (shown["Paper inside"], shown["Inside the paper's"]) == ("no", "no")
+    assert (shown["Paper, %"], shown["Runs: at the end, %"], shown["Seeds: found, %"]) == (
+        "86.7",
+        "40",
+        "50",
+    )
+    assert (shown["Paper in runs'"], shown["Seeds in paper's"]) == ("no", "no")
     assert "0 of 1 cells" in section.remarks[0] and "SPSet07 (50 %)" in section.remarks[0]
     assert "0 of the 1 in which the paper has more than 0 %" in section.remarks[0]
     assert "In 0 of 1 cells the paper's rate lies" in section.remarks[1]
@@ -69,16 +73,16 @@ def test_a_cell_that_agrees_and_seeds_alone():
     frame = trials("sedighi[stop_when_feasible=True]", 80, 100)
     section = table_s04.section(frame, [])
     (shown,) = section.tables[0].shown.to_dict("records")
-    assert shown["Inside the paper's"] == "yes"
-    assert shown["At the end, %"] == shown["Paper inside"] == "\N{EN DASH}"
+    assert shown["Seeds in paper's"] == "yes"
+    assert shown["Runs: at the end, %"] == shown["Paper in runs'"] == "\N{EN DASH}"
     assert "1 of 1 cells lie in the paper's interval, 1 of the 1" in section.remarks[0]
 
 
 def test_long_runs_alone():
     section = table_s04.section(trials("sedighi", 14, 15), [])
     (shown,) = section.tables[0].shown.to_dict("records")
-    assert (shown["At the end, %"], shown["Paper inside"]) == ("93.3", "yes")
-    assert shown["Found, %"] == shown["Inside the paper's"] == "\N{EN DASH}"
+    assert (shown["Runs: at the end, %"], shown["Paper in runs'"]) == ("93.3", "yes")
+    assert shown["Seeds: found, %"] == shown["Seeds in paper's"] == "\N{EN DASH}"
     assert "In 1 of 1 cells" in section.remarks[0]
 
 
