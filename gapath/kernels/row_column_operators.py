@@ -33,7 +33,9 @@ class Parents(NamedTuple):
 def rank(values: NDArray[np.float64], order: NDArray[np.int64], spare: NDArray[np.int64]) -> None:
     """Sort individuals by falling fitness, the lower index first among equals.
 
-    Sorted runs are merged: stable, and the same on every machine.
+    In a population that has converged most are as fit as the fittest: these come first without
+    being compared. The others are sorted in runs, and runs are merged: stable, and the same on
+    every machine.
 
     Parameters
     ----------
@@ -44,28 +46,58 @@ def rank(values: NDArray[np.float64], order: NDArray[np.int64], spare: NDArray[n
     spare : (P,) int64
         Overwritten.
     """
-    size = values.shape[0]
-    for begin in range(0, size, RUN):
-        for i in range(begin, min(begin + RUN, size)):
-            at = i
-            while at > begin and values[order[at - 1]] < values[i]:
-                order[at] = order[at - 1]
-                at -= 1
+    best = values.max()
+    fittest = 0
+    for i in range(values.shape[0]):
+        if values[i] == best:
+            order[fittest] = i
+            fittest += 1
+    at = fittest
+    for i in range(values.shape[0]):
+        if values[i] != best:
             order[at] = i
+            at += 1
+    rest = order[fittest:]
+    size = rest.shape[0]
+    for begin in range(0, size, RUN):
+        for i in range(begin + 1, min(begin + RUN, size)):
+            individual, at = rest[i], i
+            while at > begin and values[rest[at - 1]] < values[individual]:
+                rest[at] = rest[at - 1]
+                at -= 1
+            rest[at] = individual
     run = RUN
     while run < size:
-        for begin in range(0, size, 2 * run):
-            middle, end = min(begin + run, size), min(begin + 2 * run, size)
-            a, b = begin, middle
-            for at in range(begin, end):
-                if b == end or (a < middle and values[order[a]] >= values[order[b]]):
-                    spare[at] = order[a]
-                    a += 1
-                else:
-                    spare[at] = order[b]
-                    b += 1
-        order[:] = spare
+        for begin in range(0, size - run, 2 * run):
+            _merge(values, rest, begin, begin + run, min(begin + 2 * run, size), spare)
         run *= 2
+
+
+@kernel
+def _merge(
+    values: NDArray[np.float64],
+    order: NDArray[np.int64],
+    begin: int,
+    middle: int,
+    end: int,
+    spare: NDArray[np.int64],
+) -> None:
+    """Merge two sorted runs, from begin and from middle; what is in its place stays there."""
+    while begin < middle and values[order[begin]] >= values[order[middle]]:
+        begin += 1
+    left = middle - begin
+    for k in range(left):
+        spare[k] = order[begin + k]
+    a, b = 0, middle
+    for at in range(begin, end):
+        if a == left:  # what follows is in its place
+            return
+        if b == end or values[spare[a]] >= values[order[b]]:
+            order[at] = spare[a]
+            a += 1
+        else:
+            order[at] = order[b]
+            b += 1
 
 
 @kernel
