@@ -18,6 +18,7 @@ from gapath.events import DriveFinished, Event, RunStarted, Stepped
 from gapath.recorders.mcap import FILE, read_events
 
 from .figures import WIDTH, render, style
+from .logs import run_start
 from .map_picture import draw_map, mark_ends
 from .names import label, rank
 from .runs import Run
@@ -124,9 +125,7 @@ def read_trails(events: Iterator[Event], wanted: set[int]) -> Example:
     InputError
         If the log does not begin with the run's start, or cannot be read.
     """
-    start = next(events, None)
-    if not isinstance(start, RunStarted):
-        raise InputError(FILE, type(start).__name__, "RunStarted as the first event")
+    start = run_start(events)
     places: list[tuple[int, int]] = []
     trails: list[Trail] = []
     for event in events:

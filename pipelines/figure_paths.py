@@ -16,6 +16,7 @@ from gapath.events import Event, RunStarted, TrialFinished
 from gapath.recorders.mcap import FILE, read_events
 
 from .figures import WIDTH, Look, looks, render, style
+from .logs import run_start
 from .map_picture import draw_map, mark_ends
 from .names import label, rank
 from .runs import Run
@@ -98,9 +99,7 @@ def read_example(events: Iterator[Event]) -> Example:
     InputError
         If the log does not begin with the run's start, or cannot be read.
     """
-    start = next(events, None)
-    if not isinstance(start, RunStarted):
-        raise InputError(FILE, type(start).__name__, "RunStarted as the first event")
+    start = run_start(events)
     paths: list[NDArray[np.int32]] = []
     for event in events:
         if isinstance(event, TrialFinished) and len(event.path):

@@ -15,6 +15,7 @@ from gapath.kernels.raster import polyline
 from gapath.recorders.mcap import FILE, read_events
 
 from .figures import Look, looks, panels, render, style
+from .logs import run_start
 from .map_picture import draw_map, mark_ends
 from .names import label, rank
 from .runs import Run
@@ -123,9 +124,7 @@ def read_best(run: Run) -> Best:
         If the log does not begin with the run's start, or cannot be read.
     """
     events = read_events(run.folder / FILE)
-    start = next(events, None)
-    if not isinstance(start, RunStarted):
-        raise InputError(FILE, type(start).__name__, "RunStarted as the first event")
+    start = run_start(events)
     best = Best(start)
     for event in events:
         if isinstance(event, Evolved):

@@ -6,9 +6,10 @@ import pandas as pd
 
 from gapath.config import task_from_settings
 from gapath.errors import InputError
-from gapath.events import Called, Event, RunStarted
+from gapath.events import Called, Event
 from gapath.recorders.mcap import FILE, read_events
 
+from .logs import run_start
 from .names import label, rank
 from .runs import Run
 from .section import RECONSTRUCTED, Section, Table
@@ -84,9 +85,7 @@ def read_calls(events: Iterator[Event]) -> pd.DataFrame:
     InputError
         If the log cannot be read, or its settings are not those of this version.
     """
-    start = next(events, None)
-    if not isinstance(start, RunStarted):
-        raise InputError(FILE, type(start).__name__, "RunStarted as the first event")
+    start = run_start(events)
     grid = start.problem.map
     navigator = task_from_settings(start.settings).navigator
     planners = {"A": [navigator.retreat], "B": [navigator.explore], "C": navigator.replan}
