@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.grid import Field
-from gapath.problem import Evolution, PlanStatus, Problem
+from gapath.problem import Evolution, Graph, PlanStatus, Problem
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +69,15 @@ class Evolved:
     trial: int
     call: int
     evolution: Evolution = field(repr=False)
+
+
+@dataclass(frozen=True, eq=False)
+class Surveyed:
+    """What the planner made of the map before it searched: in the first trial, for all of them."""
+
+    step: int
+    trial: int
+    graph: Graph = field(repr=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,6 +201,7 @@ Event: TypeAlias = (
     RunStarted
     | TrialStarted
     | Evolved
+    | Surveyed
     | TrialFinished
     | Stepped
     | Called

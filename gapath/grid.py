@@ -45,6 +45,10 @@ class PlanningMap(Protocol):
     def cols(self) -> int:
         """Number of fields from left to right."""
 
+    @property
+    def resolution(self) -> float:
+        """Side of a field in metres."""
+
     def least_weight(self, start: Field, target: Field) -> int:
         """Give a table entry that no field between start and target undercuts."""
 

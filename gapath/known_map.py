@@ -40,6 +40,7 @@ class KnownMap:
             self.table[y, x] = world.table[y, x]
             self.seen[y, x] = True
         self._ends = (start, target)
+        self._resolution = world.resolution
         self._least = np.array([unknown], dtype=np.int64)
         # A start lighter than all other fields spoils their weight as a bound only for fields
         # from which a straightest way to the target leads over it.
@@ -55,6 +56,11 @@ class KnownMap:
     def cols(self) -> int:
         """Number of fields from left to right."""
         return int(self.table.shape[1])
+
+    @property
+    def resolution(self) -> float:
+        """Side of a field in metres."""
+        return self._resolution
 
     def contains(self, place: Field) -> bool:
         """Tell whether a field (x, y) lies on the map."""

@@ -85,6 +85,23 @@ def path_metrics(
     return PathMetrics(cost, length, int(np.count_nonzero(change)), clearance, curvature)
 
 
+def line_length(way_points: NDArray[np.int32]) -> float:
+    """Measure the straight lines that join way points.
+
+    Parameters
+    ----------
+    way_points : (n, 2) int32
+        Fields (x, y).
+
+    Returns
+    -------
+    float
+        The Euclidean length, in fields.
+    """
+    steps = np.diff(way_points.astype(np.float64), axis=0)
+    return float(np.sqrt((steps * steps).sum(axis=1)).sum())
+
+
 _EIGHTHS = np.array([[5, 6, 7], [4, 0, 0], [3, 2, 1]])
 """Heading of a step (dx, dy) in eighths of a turn, clockwise from +x, at [dy + 1, dx + 1]."""
 

@@ -1,5 +1,6 @@
 """The task "plan": trials are planning queries on a known map."""
 
+import json
 import math
 import statistics
 from collections.abc import Iterator
@@ -9,9 +10,9 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.events import Event, Evolved, TrialFinished, TrialStarted
+from gapath.events import Event, Evolved, Surveyed, TrialFinished, TrialStarted
 from gapath.graph import shortest_path
-from gapath.metrics import clearances, path_metrics
+from gapath.metrics import clearances, line_length, path_metrics
 from gapath.problem import Particular, Plan, Planner, PlanStatus, Problem
 from gapath.simulation import TimedPlan, plan_trials
 from gapath.task import Batch, Trial
@@ -22,7 +23,9 @@ class PlanRow:
     """A row of ``trials.parquet``: a planning query; failures are rows too.
 
     `cost` of a failure is the planner's best fitness, obstacles counted as VLN; `length`
-    and what follows describe a path and are NaN (turns: 0) where there is none.
+    and what follows describe a path and are NaN (turns: 0) where there is none. `line_length`
+    is the Euclidean length of the straight lines that a path is made of, NaN for one that is not;
+    `stage_times_s` gives the wall time of each stage of a planner that has stages, as JSON.
     """
 
     experiment: str
@@ -50,6 +53,8 @@ class PlanRow:
     evaluations: int
     expansions: int
     plan_time_s: float
+    line_length: float
+    stage_times_s: str
 
 
 @dataclass(frozen=True)
@@ -152,6 +157,8 @@ def _effort(row: PlanRow) -> dict[str, object]:
         "cost" if row.feasible else "best cost": f"{row.cost:g}",
         "optimal cost": f"{row.optimal_cost:g}",
     }
+    if not math.isnan(row.line_length):
+        lines["length"] = f"{row.line_length:.1f} fields in straight lines"
     if row.epochs:
         lines |= {"epochs": row.epochs, "evaluations": row.evaluations}
     if row.expansions:
@@ -178,10 +185,13 @@ def trial_events(answer: TimedPlan, seed: int, step: int) -> Iterator[Event]:
     Yields
     ------
     Event
-        Its start, its evolution if it has one, its end.
+        Its start, what the planner made of the map (in the first trial), its evolution if it has
+        one, its end.
     """
     plan = answer.plan
     yield TrialStarted(step, answer.number, seed)
+    if answer.number == 0 and plan.survey is not None:
+        yield Surveyed(step, answer.number, plan.survey())
     if plan.evolution is not None:
         yield Evolved(step, answer.number, 0, plan.evolution)
     yield TrialFinished(
@@ -231,4 +241,6 @@ def _row(batch: Batch, answer: TimedPlan, optimum: Plan, distances: NDArray[np.f
         evaluations=plan.evaluations,
         expansions=plan.expansions,
         plan_time_s=answer.plan_time_s,
+        line_length=line_length(plan.lines()) if plan.lines else math.nan,
+        stage_times_s=json.dumps(dict(plan.stages)),
     )

@@ -2,7 +2,7 @@
 
 import html
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum
 from functools import cached_property
@@ -45,7 +45,7 @@ class PlanStatus(IntEnum):
         return (
             "a feasible path was found",
             "the planner stopped without a feasible path",
-            "no path exists: the target cannot be reached from the start",
+            "no path exists on the map, or in the graph that the planner made of it",
         )[self]
 
 
@@ -109,7 +109,8 @@ class Evolution(NamedTuple):
     """
 
     best: NDArray[np.float64]
-    """(E,) fitness of the best individual; eq. (5) of KG18 for its planner."""
+    """(E,) fitness of the best individual: its cost, KG18 eq. (5), obstacles counted as VLN; for
+    the genotype "keypoints" the length of its lines in fields, M22 eq. (7)."""
     mean: NDArray[np.float64]
     """(E,) mean fitness of the population."""
     chromosomes: NDArray[np.int32]
@@ -117,7 +118,21 @@ class Evolution(NamedTuple):
     way_points: NDArray[np.int32]
     """(E, n, 2) the best individual's way points as (x, y)."""
     genotype: str
-    """What the genes mean, e.g. "control_points": x1, y1, ..., xk, yk."""
+    """What the genes mean, e.g. "control_points": x1, y1, ..., xk, yk; "keypoints": numbers of a
+    graph's points."""
+
+
+class Graph(NamedTuple):
+    """What a planner made of the map before it searched: points, and free lines between them."""
+
+    obstacles: NDArray[np.bool_]
+    """Obstacles as the planner took them, grown by the robot's radius, (rows, cols) of blocks."""
+    block: int
+    """Fields of the map, along a side, that are one block."""
+    points: NDArray[np.int32]
+    """(n, 2) fields (x, y) of the map: the start, the keypoints, the target."""
+    edges: NDArray[np.int32]
+    """(m, 2) numbers of the points that a free line joins, the smaller one first."""
 
 
 def no_path() -> NDArray[np.int32]:
@@ -146,6 +161,12 @@ class Plan:
         Fields that a graph search expanded.
     trace : callable, optional
         Computes the history of a genetic algorithm; called only if somebody wants it.
+    lines : callable, optional
+        Gives the way points (n, 2) that straight lines join, if the path is made of such lines.
+    survey : callable, optional
+        Gives what the planner made of the map before it searched; the same for every stream.
+    stages : mapping of str to float
+        Wall time of each stage in seconds, for a planner that has stages.
     """
 
     status: PlanStatus
@@ -155,6 +176,9 @@ class Plan:
     evaluations: int = 0
     expansions: int = 0
     trace: Callable[[], Evolution] | None = field(default=None, repr=False)
+    lines: Callable[[], NDArray[np.int32]] | None = field(default=None, repr=False)
+    survey: Callable[[], Graph] | None = field(default=None, repr=False)
+    stages: Mapping[str, float] = field(default_factory=dict, repr=False)
 
     @cached_property
     def evolution(self) -> Evolution | None:

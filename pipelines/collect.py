@@ -1,5 +1,6 @@
 """From run folders to two tidy frames: a row for each planning query, a row for each drive."""
 
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import fields
 from pathlib import Path
@@ -19,8 +20,8 @@ from .runs import Run, find_runs
 _ROWS: dict[str, type[Any]] = {"plan": PlanRow, "drive": DriveRow}
 """The rows of each task."""
 
-_LATER = ("start", "target")
-"""Columns that the rows of older runs lack; empty there."""
+_LATER = {"start": "", "target": "", "line_length": math.nan, "stage_times_s": "{}"}
+"""Columns that the rows of older runs lack, and what stands there."""
 
 _CHECKS: dict[Any, tuple[Callable[[pd.Series], bool], str]] = {
     int: (is_numeric_dtype, "numbers"),
@@ -136,7 +137,7 @@ def _trials(run: Run) -> pd.DataFrame:
         raise
     except Exception as error:  # pyarrow raises more kinds than it documents
         raise InputError(path.name, type(error).__name__, "readable Parquet") from error
-    trials = trials.assign(**{name: "" for name in _LATER if name not in trials})
+    trials = trials.assign(**{name: v for name, v in _LATER.items() if name not in trials})
     missing = sorted({field.name for field in fields(kind)} - set(trials.columns))
     require(not missing, path.name, f"no column {', '.join(missing)}", "all columns of a trial")
     for field in fields(kind):

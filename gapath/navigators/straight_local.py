@@ -41,6 +41,8 @@ class Subsection(NamedTuple):
     table: Table
     corner: Field
     """The known map's field at its upper left."""
+    resolution: float
+    """Side of a field in metres."""
 
     @property
     def rows(self) -> int:
@@ -93,7 +95,7 @@ class Navigator:
             "a mapping with base, the name of a planner's YAML",
         )
         if isinstance(self.planner, Particular):
-            largest = Subsection(np.broadcast_to(np.int32(0), 2 * (max(sides),)), (0, 0))
+            largest = Subsection(np.broadcast_to(np.int32(0), 2 * (max(sides),)), (0, 0), 1.0)
             self.planner.check(Around(largest, (0, 0), (0, 0), CornerCutting.ALLOW))
         interval = self.retreat_interval
         require(interval >= 1, "navigator.retreat_interval", interval, "an integer from 1 on")
@@ -214,10 +216,11 @@ def _around(query: Query, sub_target: NDArray[np.int32], side: int) -> Around:
     left, top, right, bottom = max(x, 0), max(y, 0), min(x + side, cols), min(y + side, rows)
     table[top - y : bottom - y, left - x : right - x] = known[top:bottom, left:right]
     inside = [(int(u) - x, int(v) - y) for u, v in (start, target)]
-    return Around(Subsection(table, (x, y)), inside[0], inside[1], query.corner_cutting)
+    part = Subsection(table, (x, y), query.map.resolution)
+    return Around(part, inside[0], inside[1], query.corner_cutting)
 
 
 def on_map(plan: Plan, around: Around) -> Plan:
     """Move a subsection's plan to where it lies on the map."""
     corner = np.array(around.map.corner, dtype=np.int32)
-    return replace(plan, path=plan.path + corner, trace=None)
+    return replace(plan, path=plan.path + corner, trace=None, lines=None, survey=None)

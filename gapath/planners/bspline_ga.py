@@ -10,6 +10,7 @@ from fractions import Fraction
 from functools import cached_property, partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gapath.errors import require
 from gapath.grid import SCALE
@@ -159,7 +160,11 @@ class Planner:
             epochs=len(result.epochs),
             evaluations=evaluations(self.population, len(result.epochs)),
             trace=partial(self._evolution, result),
+            lines=partial(self._lines, result) if found else None,
         )
+
+    def _lines(self, result: EvolutionResult) -> NDArray[np.int32]:
+        return np.asarray(way_points(result.chromosomes[-1:], self._basis)[0])
 
     def _evolution(self, result: EvolutionResult) -> Evolution:
         best, mean = fitness_history(result.epochs, self.population, self.vln, SCALE)

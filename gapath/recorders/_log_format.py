@@ -41,6 +41,16 @@ float64[] best            # fitness of the best individual
 float64[] mean            # mean fitness of the population
 string genotype           # what the genes mean
 """,
+    "gapath_msgs/msg/Graph": """\
+# What a planner made of the map before it searched; the same in every trial of a run.
+uint64 trial
+uint32 rows               # of the picture of obstacles, in blocks
+uint32 cols
+uint32 block              # fields of the map, along a side, that are one block
+uint8[] obstacles         # grown by the robot's radius: 8 blocks a byte, row by row, high bit first
+int32[] points            # x, y, x, y, ... [fields]: the start, the keypoints, the target
+int32[] edges             # i, j, i, j, ...: points that a free line joins
+""",
     "gapath_msgs/msg/Result": """\
 # A trial ended.
 uint8 FOUND=0
@@ -123,6 +133,7 @@ TOPICS_OF = {
     | {
         "/path": "nav_msgs/msg/Path",
         "/ga_run": "gapath_msgs/msg/GaRun",
+        "/graph": "gapath_msgs/msg/Graph",
         "/result": "gapath_msgs/msg/Result",
     },
     "drive": _OF_BOTH

@@ -15,11 +15,12 @@ from gapath.events import (
     RunFinished,
     RunStarted,
     Stepped,
+    Surveyed,
     TrialFinished,
     TrialStarted,
 )
 from gapath.grid import GridMap
-from gapath.problem import Evolution, PlanStatus
+from gapath.problem import Evolution, Graph, PlanStatus
 from gapath.recorders import _drive_messages
 from gapath.recorders._cdr import (
     ENCAPSULATION,
@@ -80,6 +81,10 @@ class Messages:
                 yield Record("/trial_start", step, ENCAPSULATION + _TRIAL.pack(trial, seed) + texts)
             case Evolved():
                 yield _ga_run(event)
+            case Surveyed(step, trial, (obstacles, block, points, edges)):
+                picture = np.packbits(obstacles)
+                fields = (picture, points.ravel(), edges.ravel())
+                yield record("/graph", step, trial, *obstacles.shape, block, *fields)
             case TrialFinished():
                 yield from _trial_finished(event, self._run.problem.map)
             case Stepped():
@@ -178,6 +183,17 @@ def _read_evolved(step: int, m: Any) -> Evolved:
     return Evolved(step, m.trial, m.call, evolution)
 
 
+def _read_surveyed(step: int, m: Any) -> Surveyed:
+    blocks = np.unpackbits(np.array(m.obstacles, dtype=np.uint8), count=m.rows * m.cols)
+    graph = Graph(
+        obstacles=blocks.astype(np.bool_).reshape(m.rows, m.cols),
+        block=m.block,
+        points=np.array(m.points, dtype=np.int32).reshape(-1, 2),
+        edges=np.array(m.edges, dtype=np.int32).reshape(-1, 2),
+    )
+    return Surveyed(step, m.trial, graph)
+
+
 def _read_finished(step: int, m: Any) -> TrialFinished:
     status = PlanStatus(m.status)
     path = np.array(m.path, dtype=np.int32).reshape(-1, 2)
@@ -187,6 +203,7 @@ def _read_finished(step: int, m: Any) -> TrialFinished:
 _READERS: dict[str, Callable[[int, Any], Event]] = {
     "/trial_start": lambda step, m: TrialStarted(step, m.trial, m.seed),
     "/ga_run": _read_evolved,
+    "/graph": _read_surveyed,
     "/result": _read_finished,
     "/run_end": lambda step, m: RunFinished(step, m.trials, m.found),
     **_drive_messages.READERS,

@@ -5,14 +5,16 @@ import rerun as rr
 import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
-from gapath.events import Event, Evolved, RunStarted, TrialFinished, TrialStarted
+from gapath.events import Event, Evolved, RunStarted, Surveyed, TrialFinished, TrialStarted
 from gapath.grid import GridMap
 from gapath.kernels.raster import polyline
+from gapath.problem import Graph
 from gapath.recorders._drawing import (
     GREEN,
     GREY,
     ORANGE,
     PURPLE,
+    VERMILLION,
     Color,
     blueprint,
     centres,
@@ -37,7 +39,8 @@ def recording(run: RunStarted, events: list[Event]) -> bytes:
         What the run's trials share.
     events : list of Event
         The trial's, from its `TrialStarted` to its `TrialFinished`; in between the genetic
-        algorithms, none for a planner that is none.
+        algorithms, none for a planner that is none, and what the planner made of the map, if it
+        says so.
 
     Returns
     -------
@@ -50,15 +53,18 @@ def recording(run: RunStarted, events: list[Event]) -> bytes:
     evolutions = [event for event in events if isinstance(event, Evolved)]
     stream = new_stream(run, trial)
     memory = stream.memory_recording()
-    stream.send_blueprint(_blueprint(run, bool(evolutions)), make_active=False)
+    surveys = [event for event in events if isinstance(event, Surveyed)]
+    stream.send_blueprint(_blueprint(run, evolutions), make_active=False)
     stream.send_recording_name(f"{run.problem.map.name} {run.planner} trial {trial.trial}")
     log_problem(stream, run, 6)
     _log_map(stream, run.problem.map)
+    for survey in surveys:
+        _log_graph(stream, run.problem.map, survey.graph)
     for evolved in evolutions:
         _log_evolution(stream, run.problem.map, evolved, evolved.step - trial.step + 1)
     last = max((e.step - trial.step + len(e.evolution.best) for e in evolutions), default=None)
     _log_result(stream, finished, last)
-    stream.log("text", _text(run, trial, finished, evolutions), static=True)
+    stream.log("text", _text(run, trial, finished, evolutions, bool(surveys)), static=True)
     content: bytes = memory.drain_as_bytes()
     stream.disconnect()
     return content
@@ -68,6 +74,21 @@ def _log_map(stream: rr.RecordingStream, grid: GridMap) -> None:
     # As in KG18 0 is black and 1 white; squared, or the usual 0.5 would drown the colours.
     grey = np.floor(grid.weights**2 * 255 + 0.5).astype(np.uint8)
     stream.log("map", rr.Image(grey, color_model="L"), static=True)
+
+
+def _log_graph(stream: rr.RecordingStream, grid: GridMap, graph: Graph) -> None:
+    """Log what the planner made of the map: grown obstacles, keypoints, free lines."""
+    grown = np.kron(graph.obstacles, np.ones((graph.block, graph.block), dtype=np.bool_))
+    grown = grown[: grid.rows, : grid.cols] & ~grid.obstacles
+    rim = np.zeros((grid.rows, grid.cols, 4), dtype=np.uint8)
+    rim[grown] = (*VERMILLION, 110)
+    stream.log("map/grown_obstacles", rr.Image(rim, color_model="RGBA", draw_order=5), static=True)
+    stream.log("map/graph", line(PURPLE, 0.7, draw_order=10), static=True)
+    strips = rr.LineStrips2D.from_fields(strips=centres(graph.points[graph.edges]))
+    stream.log("map/graph", strips, static=True)
+    radius = rr.Radius.ui_points(3)
+    marks = rr.Points2D(centres(graph.points), colors=[VERMILLION], radii=[radius], draw_order=15)
+    stream.log("map/keypoints", marks, static=True)
 
 
 def _log_evolution(
@@ -88,8 +109,10 @@ def _log_evolution(
         )
         _send_points(stream, "map/best/control_points", time, points, PURPLE, 4)
 
-    with np.errstate(divide="ignore", invalid="ignore"):
-        best, mean = np.log10(evolution.best), np.log10(evolution.mean)
+    best, mean = evolution.best, evolution.mean
+    if evolution.genotype != "keypoints":  # lengths are all of one size, costs are not
+        with np.errstate(divide="ignore", invalid="ignore"):
+            best, mean = np.log10(best), np.log10(mean)
     send_curve(stream, "fitness/mean", time, mean, "mean of the population", GREY)
     send_curve(stream, "fitness/best", time, best, "best", ORANGE)
     obstacles = np.array([_obstacle_fields(grid, path) for path in paths], dtype=np.float64)
@@ -150,7 +173,11 @@ def _send_points(
 
 
 def _text(
-    run: RunStarted, trial: TrialStarted, finished: TrialFinished, evolutions: list[Evolved]
+    run: RunStarted,
+    trial: TrialStarted,
+    finished: TrialFinished,
+    evolutions: list[Evolved],
+    surveyed: bool,
 ) -> rr.TextDocument:
     """Write the panel of settings and result, in Markdown."""
     if evolutions:
@@ -170,6 +197,9 @@ def _text(
         moving = "- **orange**: best path of the epoch; dots: its way points\n"
         if evolutions[0].evolution.genotype == "control_points":
             moving += "- **purple**: its control points and their polygon\n"
+    if surveyed:
+        moving += "- **red**: obstacles grown by the robot's radius, keypoints\n"
+        moving += "- **thin purple**: lines between keypoints that meet no obstacle\n"
     legend = (
         f"{moving}"
         "- **green**: the path found\n- **blue**: a path of least cost\n"
@@ -182,15 +212,17 @@ def _number(value: float) -> str:
     return f"{value:.10g}" if np.isfinite(value) else "none"
 
 
-def _blueprint(run: RunStarted, evolved: bool) -> rrb.Blueprint:
+def _blueprint(run: RunStarted, evolutions: list[Evolved]) -> rrb.Blueprint:
     """Lay the views out: a large map above two curves, text on the right."""
     view = map_view(run.problem.map)
-    if evolved:
+    if evolutions:
+        by_length = evolutions[0].evolution.genotype == "keypoints"
+        what = "Length of the path" if by_length else "log10 of the cost, obstacles as VLN"
         plain = rrb.PlotLegend(visible=False)  # it would hide the best or the worst
         curves = rrb.Horizontal(
             rrb.TimeSeriesView(
                 origin="fitness",
-                name="log10 of the cost, obstacles as VLN: best (orange), mean (grey)",
+                name=f"{what}: best (orange), mean (grey)",
                 plot_legend=plain,
             ),
             rrb.TimeSeriesView(

@@ -11,7 +11,14 @@ from pathlib import Path
 
 from gapath.durable import part_of, publish, write_part
 from gapath.errors import require
-from gapath.events import DriveFinished, Event, RunStarted, TrialFinished, TrialStarted
+from gapath.events import (
+    DriveFinished,
+    Event,
+    RunStarted,
+    Surveyed,
+    TrialFinished,
+    TrialStarted,
+)
 
 
 @dataclass
@@ -33,6 +40,7 @@ class Recorder:
     trials: list[int]
     _folder: Path = field(init=False, repr=False)
     _run: RunStarted = field(init=False, repr=False)
+    _survey: list[Event] = field(init=False, repr=False, default_factory=list)
     _events: list[Event] = field(init=False, repr=False, default_factory=list)
     _names: list[str] = field(init=False, repr=False, default_factory=list)
 
@@ -54,7 +62,7 @@ class Recorder:
     def open(self, folder: str) -> None:
         """Prepare to write files into an existing folder."""
         self._folder = Path(folder)
-        self._events = []
+        self._survey, self._events = [], []
         self._names = []
 
     def record(self, event: Event) -> None:
@@ -78,8 +86,10 @@ class Recorder:
                 self._run = event
             case TrialStarted() if event.trial in self.trials:
                 self._events = [event]
+            case Surveyed():
+                self._survey = [event]
             case TrialFinished() | DriveFinished() if self._events:
-                self._write(event.trial, [*self._events, event])
+                self._write(event.trial, [*self._events, *self._survey, event])
                 self._events = []
             case _ if self._events:
                 self._events.append(event)

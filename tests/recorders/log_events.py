@@ -9,10 +9,17 @@ import numpy as np
 
 from gapath.drive_events import drive_events
 from gapath.driving import Drive, Frame, Outcome
-from gapath.events import Evolved, RunFinished, RunStarted, TrialFinished, TrialStarted
+from gapath.events import (
+    Evolved,
+    RunFinished,
+    RunStarted,
+    Surveyed,
+    TrialFinished,
+    TrialStarted,
+)
 from gapath.grid import GridMap
 from gapath.navigation import Call, Decision, Mode
-from gapath.problem import Evolution, Plan, PlanStatus, Problem
+from gapath.problem import Evolution, Graph, Plan, PlanStatus, Problem
 from gapath.recorders import mcap
 
 
@@ -54,6 +61,14 @@ def example(trials=6, epochs=8):
         )
         status = PlanStatus.FOUND if found else PlanStatus.NOT_FOUND
         events.append(TrialStarted(step, trial, 7))
+        if trial == 0:
+            graph = Graph(
+                rng.random((4, 5)) < 0.3,
+                2,
+                rng.integers(0, 7, (6, 2), dtype=np.int32),
+                np.array([[0, 1], [1, 5]], dtype=np.int32),
+            )
+            events.append(Surveyed(step, trial, graph))
         events.append(Evolved(step, trial, 0, evolution))
         step += epochs
         walked = path if found else path[:0]

@@ -1,0 +1,91 @@
+"""Any planner of the pixel grid, for a robot that is not a point: obstacles grow first."""
+
+import dataclasses
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from gapath.grid import SCALE, Field, GridMap
+from gapath.obstacle_image import Clearance, dilate
+from gapath.problem import CornerCutting, Particular, Plan, PlanStatus, Query
+from gapath.rng import Stream
+from gapath.stages import Stages
+
+
+@dataclass(frozen=True)
+class Planner(Clearance):
+    """Grows obstacles as M22 does and lets another planner plan between them.
+
+    Parameters
+    ----------
+    robot_radius, radius_unit, radius_tolerance, element, threshold
+        As of `gapath.obstacle_image.Clearance`.
+    planner : Planner
+        Plans on the map of grown obstacles; in a YAML the name of its own as ``base``, and the
+        values that replace that one's.
+    """
+
+    planner: Any
+
+    def check(self, problem: Query) -> None:
+        """Refuse what either part refuses.
+
+        Parameters
+        ----------
+        problem : Query
+            Start and target on a known map.
+
+        Raises
+        ------
+        InputError
+            If the robot does not fit at an end, or the planner does not take such a map.
+        """
+        super().check(problem)
+        if isinstance(self.planner, Particular):
+            self.planner.check(self._grown(problem))
+
+    def plan(self, problem: Query, stream: Stream) -> Plan:
+        """Grow the obstacles, then plan.
+
+        Parameters
+        ----------
+        problem : Query
+            Start and target on a known map.
+        stream : (4,) uint64
+            A random stream, advanced in place.
+
+        Returns
+        -------
+        Plan
+            The planner's; INFEASIBLE if the robot does not fit at an end.
+        """
+        stages = Stages()
+        grown = self._grown(problem)
+        stages.end("dilation")
+        for x, y in (problem.start, problem.target):
+            if grown.map.weights[y, x] == 1.0:
+                return Plan(PlanStatus.INFEASIBLE, stages=stages.seconds)
+        plan: Plan = self.planner.plan(grown, stream)
+        stages.end("planning")
+        return dataclasses.replace(plan, stages=stages.seconds | dict(plan.stages))
+
+    def _grown(self, problem: Query) -> "_Grown":
+        obstacles = dilate(self.obstacles(problem), self.growth(problem))
+        weights = np.minimum(problem.map.table / SCALE, _DEAREST)
+        weights[obstacles] = 1.0
+        grid = GridMap("grown", weights)
+        return _Grown(grid, problem.start, problem.target, problem.corner_cutting)
+
+
+class _Grown(NamedTuple):
+    """The same problem among grown obstacles."""
+
+    map: GridMap
+    start: Field
+    target: Field
+    corner_cutting: CornerCutting
+
+
+_DEAREST = 1 - 1 / (16 * SCALE)
+"""Of weights that are no obstacle; in fixed point it is 1."""

@@ -1,0 +1,215 @@
+"""From a map to a visibility graph (M22 Secs II.A to II.C): dilation, keypoints, free lines."""
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gapath.errors import require
+from gapath.grid import OBSTACLE, SCALE
+from gapath.kernels.raster import polyline
+from gapath.kernels.visibility_graph import graph_lengths, shortest
+from gapath.keypoints import Points, axis_ends, corners, label, place
+from gapath.obstacle_image import Clearance, Picture, dilate
+from gapath.problem import Graph, Plan, PlanStatus, Query
+from gapath.resizing import coarsest_scale, growth_at, shrunk
+from gapath.stages import Stages
+
+MAX_POINTS = 4096
+"""Points of the largest graph: its lengths then take 128 MiB."""
+
+
+class VisibilityGraph(NamedTuple):
+    """Points, and the straight lines between them that meet no obstacle."""
+
+    obstacles: Picture
+    """The picture on which lines are drawn, grown by the robot's radius, (rows, cols)."""
+    points: Points
+    """(n, 2) pixels (x, y) of that picture: the start, the keypoints, the end."""
+    lengths: NDArray[np.int64]
+    """(n, n) in units of 1 / SCALE pixels of the picture, or `BLOCKED`."""
+    scale: int
+    """Pixels of the map, along a side, that are one of the picture."""
+    obstacle_count: int
+    """Number of obstacles."""
+
+    def shortest(self, informed: bool) -> tuple[NDArray[np.int32], int]:
+        """Find the shortest path through the graph.
+
+        Parameters
+        ----------
+        informed : bool
+            True for A*, False for Dijkstra.
+
+        Returns
+        -------
+        indices : (m,) int32
+            Points from the start to the end; none if no path joins them.
+        expansions : int
+            Points that the search expanded.
+        """
+        n = len(self.points)
+        before, expansions = np.empty(n, dtype=np.int32), np.empty(1, dtype=np.int64)
+        costs = np.empty(n, dtype=np.int64)
+        length = shortest(self.lengths, self.points, informed, costs, before, expansions)
+        indices = [n - 1] if length >= 0 else []
+        while indices and indices[-1]:
+            indices.append(int(before[indices[-1]]))
+        return np.array(indices[::-1], dtype=np.int32), int(expansions[0])
+
+    def drawn(self, problem: Query) -> Graph:
+        """Give the graph as recordings show it."""
+        edges = np.argwhere(np.triu(self.lengths >= 0, 1)).astype(np.int32)
+        return Graph(self.obstacles, self.scale, self.on_map(problem), edges)
+
+    def answer(self, plan: Plan, indices: NDArray[np.int32], problem: Query) -> Plan:
+        """Give a plan its path.
+
+        Parameters
+        ----------
+        plan : Plan
+            A plan without a path.
+        indices : (m,) int32
+            Points from the start to the end, joined by free lines.
+        problem : Query
+            The problem whose graph this is.
+
+        Returns
+        -------
+        Plan
+            FOUND.
+        """
+        path = self.path(indices, problem)
+        cost = int(problem.map.table[path[:, 1], path[:, 0]].sum(dtype=np.int64)) / SCALE
+        return replace(
+            plan,
+            status=PlanStatus.FOUND,
+            path=path,
+            cost=cost,
+            lines=lambda: self.on_map(problem)[indices],
+        )
+
+    def on_map(self, problem: Query) -> Points:
+        """Give where the points lie on the map, (n, 2) pixels (x, y)."""
+        if self.scale == 1:
+            return self.points
+        points = self._representatives(self.points, problem)
+        points[0], points[-1] = problem.start, problem.target
+        return points
+
+    def path(self, indices: NDArray[np.int32], problem: Query) -> Points:
+        """Give the fields of a path on the map.
+
+        Parameters
+        ----------
+        indices : (m,) int32
+            Points from the first to the last one, joined by free lines.
+        problem : Query
+            The problem whose graph this is.
+
+        Returns
+        -------
+        (k, 2) int32
+            Fields (x, y) from start to target, each a neighbour of the one before.
+        """
+        fields = polyline(self.points[indices])
+        if self.scale == 1:
+            return fields
+        # From block to block through their representatives, which lie straight or diagonally to
+        # one another: a line between far ones could enter a block that the small line does not.
+        ends = np.array([problem.start, problem.target], dtype=np.int32)
+        through = self._representatives(fields, problem)
+        return polyline(np.concatenate((ends[:1], through, ends[1:])))
+
+    def _representatives(self, blocks: Points, problem: Query) -> Points:
+        last = (problem.map.rows - 1) % self.scale, (problem.map.cols - 1) % self.scale
+        offset = min(self.scale // 2, *last)  # the same in every block, also in a cut one
+        return (blocks * self.scale + offset).astype(np.int32)
+
+
+@dataclass(frozen=True)
+class Surveyor(Clearance):
+    """Makes visibility graphs.
+
+    Parameters
+    ----------
+    robot_radius, radius_unit, radius_tolerance, element, threshold
+        As of `gapath.obstacle_image.Clearance`.
+    keypoints : str
+        "axes": four an obstacle, the ends of its main axes; "corners": its outward corners.
+    corner_tolerance : float
+        Pixels by which the sides between corners may miss an outline.
+    push_out : bool
+        Move keypoints that lie within a grown obstacle outwards.
+    resize : bool
+        Work on the smallest picture that loses nothing.
+    """
+
+    keypoints: str
+    corner_tolerance: float
+    push_out: bool
+    resize: bool
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require(
+            self.keypoints in ("axes", "corners"),
+            "planner.keypoints",
+            self.keypoints,
+            '"axes" or "corners"',
+        )
+        require(
+            0 < self.corner_tolerance <= 100,
+            "planner.corner_tolerance",
+            self.corner_tolerance,
+            "a number of pixels in (0, 100]",
+        )
+
+    def survey(self, problem: Query, stages: Stages) -> VisibilityGraph:
+        """Make the graph of a problem.
+
+        Parameters
+        ----------
+        problem : Query
+            Start and target on a known map.
+        stages : Stages
+            Takes the times of "resizing", "dilation", "keypoints" and "graph".
+
+        Returns
+        -------
+        VisibilityGraph
+            A start or end within an obstacle has no line.
+
+        Raises
+        ------
+        InputError
+            If there are too many keypoints.
+        """
+        obstacles, growth, scale = self.obstacles(problem), self.growth(problem), 1
+        if self.resize:
+            scale = coarsest_scale(obstacles, growth, (problem.start, problem.target))
+            obstacles, growth = shrunk(obstacles, scale), growth_at(scale, growth)
+            stages.end("resizing")
+        grown = dilate(obstacles, growth)
+        stages.end("dilation")
+
+        labels, count = label(grown)
+        by_axes = self.keypoints == "axes"
+        found = axis_ends(labels) if by_axes else corners(grown, self.corner_tolerance)
+        require(
+            len(found) + 2 <= MAX_POINTS,
+            "map",
+            f"{len(found)} keypoints",
+            f"at most {MAX_POINTS - 2}: a larger planner.corner_tolerance or robot_radius, or a"
+            " smaller map",
+        )
+        ends = np.array([problem.start, problem.target], dtype=np.int32) // scale
+        points = np.concatenate((ends[:1], place(found, grown, self.push_out), ends[1:]))
+        stages.end("keypoints")
+
+        lengths = np.empty((len(points), len(points)), dtype=np.int64)
+        table = np.where(grown, np.int32(OBSTACLE), np.int32(0))
+        graph_lengths(table, points, int(problem.corner_cutting), lengths)
+        stages.end("graph")
+        return VisibilityGraph(grown, points, lengths, scale, count)
