@@ -12,7 +12,7 @@ from gapath.kernels.raster import polyline
 from gapath.kernels.visibility_graph import graph_lengths, shortest
 from gapath.keypoints import Points, axis_ends, corners, label, place
 from gapath.obstacle_image import Clearance, Picture, dilate
-from gapath.problem import Graph, Plan, PlanStatus, Query
+from gapath.problem import CornerCutting, Graph, Plan, PlanStatus, Query
 from gapath.resizing import coarsest_scale, growth_at, shrunk
 from gapath.stages import Stages
 
@@ -120,7 +120,10 @@ class VisibilityGraph(NamedTuple):
         # one another: a line between far ones could enter a block that the small line does not.
         ends = np.array([problem.start, problem.target], dtype=np.int32)
         through = self._representatives(fields, problem)
-        return polyline(np.concatenate((ends[:1], through, ends[1:])))
+        bends = np.stack((through[[0, -1], 0], ends[:, 1]), axis=1)  # within the ends' blocks
+        if problem.corner_cutting is not CornerCutting.NO_DIAGONALS:
+            bends = ends
+        return polyline(np.concatenate((ends[:1], bends[:1], through, bends[1:], ends[1:])))
 
     def _representatives(self, blocks: Points, problem: Query) -> Points:
         last = (problem.map.rows - 1) % self.scale, (problem.map.cols - 1) % self.scale

@@ -74,7 +74,7 @@ class Planner(Clearance):
         obstacles = dilate(self.obstacles(problem), self.growth(problem))
         weights = np.minimum(problem.map.table / SCALE, _DEAREST)
         weights[obstacles] = 1.0
-        grid = GridMap("grown", weights)
+        grid = GridMap("grown", weights, resolution=problem.map.resolution)
         return _Grown(grid, problem.start, problem.target, problem.corner_cutting)
 
 
