@@ -1,6 +1,6 @@
 """What maps, planners and navigators are called, and in which order they stand."""
 
-from . import kg18, s04
+from . import kg18, m22, s04
 
 RIVALS = {
     "astar": "A*",
@@ -11,16 +11,20 @@ RIVALS = {
 }
 """What no paper proposes but stands beside their methods."""
 
-LABELS = kg18.LABELS | s04.LABELS | RIVALS
+LABELS = kg18.LABELS | s04.LABELS | m22.LABELS | RIVALS
 
 ORDER = (
     *kg18.MAPS,
     *s04.MAPS,
+    *m22.MAPS,
+    m22.CONCAVE,
     *kg18.UNKNOWN_MAPS,
     "kg18_enclosed",
     *kg18.PLANNERS,
     *kg18.NAVIGATORS,
     *s04.PLANNERS,
+    *m22.PLANNERS,
+    *m22.RIVALS,
     *RIVALS,
 )
 """The papers' order, method by method."""

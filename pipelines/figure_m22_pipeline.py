@@ -1,0 +1,112 @@
+"""M22 Figs 2 to 7: from the image to the graph, and the path that the planner took through it."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from gapath.errors import InputError
+from gapath.grid import GridMap
+from gapath.problem import Graph
+
+from .figures import panels, render, style
+from .m22_logs import First, read_first
+from .names import label, rank
+from .runs import Run
+from .section import Figure, Section
+
+TASK = "plan"
+EXPERIMENT = "m22"
+ORDER = 93
+
+_POINT, _LINE, _GROWN = "#D55E00", "#56B4E9", "#E69F00"
+
+
+def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
+    """Draw the stages of the first scene.
+
+    Parameters
+    ----------
+    trials : DataFrame
+        The trials of the experiment.
+    runs : sequence of Run
+        The runs they come from, with their logs.
+
+    Returns
+    -------
+    Section or None
+        One figure; None if no run of the paper's planner has a log.
+    """
+    mine = [run for run in runs if run.manifest["planner"] == "visibility_ga"]
+    skipped = []
+    for run in sorted(mine, key=lambda run: rank(run.manifest["map"])):
+        try:
+            first = read_first(run)
+        except InputError as error:
+            skipped.append((run.name, str(error)))
+            continue
+        if first is not None and first.graph is not None:
+            return Section(
+                title="M22's pipeline in pictures",
+                figures=(_figure(first, first.graph),),
+                skipped=tuple(skipped),
+            )
+    return Section("M22's pipeline in pictures", skipped=tuple(skipped)) if skipped else None
+
+
+def grown_picture(grid: GridMap, graph: Graph) -> NDArray[np.bool_]:
+    """Give the grown obstacles in the size of the map, (rows, cols)."""
+    blocks = np.kron(graph.obstacles, np.ones((graph.block, graph.block), dtype=np.bool_))
+    return np.asarray(blocks[: grid.rows, : grid.cols])
+
+
+def draw_picture(axes: Axes, grid: GridMap, graph: Graph | None) -> None:
+    """Draw obstacles white on black, and what they grew by in a colour."""
+    picture = np.zeros((grid.rows, grid.cols, 3))
+    if graph is not None:
+        picture[grown_picture(grid, graph)] = [int(_GROWN[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+    picture[grid.obstacles] = 1.0
+    axes.imshow(picture, interpolation="nearest")
+    axes.grid(visible=False)
+    axes.set(xticks=[], yticks=[])
+
+
+def draw_lines(axes: Axes, points: NDArray[np.int32], edges: NDArray[np.int32]) -> None:
+    """Draw lines of a graph, and its points."""
+    for i, j in edges:
+        axes.plot(*points[[i, j]].T, color=_LINE, linewidth=0.4)
+    axes.plot(*points.T, "o", color=_POINT, markersize=2.5)
+
+
+def _figure(first: First, graph: Graph) -> Figure:
+    problem = first.start.problem
+    grid, points = problem.map, graph.points
+    everything = np.argwhere(np.triu(np.ones((len(points), len(points)), dtype=np.bool_), 1))
+    titles = ("image (Fig. 2)", "dilated (Fig. 3)", "keypoints (Fig. 5)", "all lines (Fig. 6)",
+              "free lines (Fig. 7)", "path found")  # fmt: skip
+    none = np.empty((0, 2), dtype=np.int32)
+    with style():
+        canvas, axes = panels(6, 1.75, same_axes=False)
+        for i, (panel, title) in enumerate(zip(axes, titles, strict=True)):
+            draw_picture(panel, grid, graph if i in (1, 3, 4, 5) else None)
+            panel.set_title(title)
+        draw_lines(axes[2], points, none)
+        draw_lines(axes[3], points, everything.astype(np.int32))
+        draw_lines(axes[4], points, graph.edges)
+        if len(first.way_points):
+            axes[5].plot(*first.way_points.T, color=_LINE, marker="o", markersize=2.5)
+        svg, png = render(canvas)
+    name = label(grid.name, grid.source)
+    return Figure(
+        "m22_pipeline",
+        f"{name}: the image, obstacles grown by the robot's radius (orange), keypoints, all "
+        "lines between them, those that meet no obstacle, and the first path that the genetic "
+        "algorithm found. Start at the lower left, end at the right border.",
+        f"Six pictures of {grid.cols} by {grid.rows} pixels: {len(points) - 2} keypoints, "
+        f"{len(everything)} lines of which {len(graph.edges)} are free; the path has "
+        f"{max(len(first.way_points) - 1, 0)} lines.",
+        svg,
+        png,
+    )

@@ -1,0 +1,289 @@
+"""M22 Sec. III: ten scenes, the paper's planner beside exact ones and free points."""
+
+import json
+from collections.abc import Sequence
+
+import pandas as pd
+
+from .m22 import EXACT, IMAGE_SHARE, MAPS, PAPER
+from .names import label, rank
+from .runs import Run
+from .section import Section, Table
+from .statistics import wilson
+from .summary import spread
+from .text import NOTHING, middle, number, percent, percent_range
+
+TASK = "plan"
+EXPERIMENT = "m22"
+ORDER = 92
+
+SCENES = (
+    "The scenes marked reconstructed are not the paper's: its figures are lost. They were drawn "
+    "by a seeded generator: six convex obstacles, start at the lower left, end at the right border."
+)
+
+STAGES = ("resizing", "dilation", "keypoints", "graph", "genetic algorithm", "search", "planning")
+
+
+def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
+    """Make the section on M22's scenes.
+
+    Parameters
+    ----------
+    trials : DataFrame
+        The trials of the experiment.
+    runs : sequence of Run
+        The runs they come from.
+
+    Returns
+    -------
+    Section
+        Methods beside the paper's, scene by scene, and where the time goes.
+    """
+    trials = with_references(trials)
+    methods = summarise_methods(trials)
+    return Section(
+        title="M22: from an image to a visibility graph to a genetic algorithm",
+        text=(
+            "White obstacles on a black floor are grown by the robot's radius; the ends of their "
+            "main axes are keypoints; straight lines between these that meet no obstacle make a "
+            "graph; a genetic algorithm looks for the shortest path through it, f being its "
+            "length in pixels. It stops after 20 generations without a shorter path, as in the "
+            "paper's ten tests, or takes 829 (unlimited), as in one more.",
+            SCENES,
+        ),
+        tables=(_methods(methods), _scenes(trials), _stages(trials)),
+        remarks=_remarks(methods),
+    )
+
+
+def with_references(trials: pd.DataFrame) -> pd.DataFrame:
+    """Put beside each trial what exact planners found on its scene.
+
+    Parameters
+    ----------
+    trials : DataFrame
+        One row a trial.
+
+    Returns
+    -------
+    DataFrame
+        With `gap`, f above the shortest path of the same graph, and `above_pixels`, octile length
+        above that of A* on the pixel grid; both as a part of the reference, missing where there
+        is none.
+    """
+    found = trials[trials["feasible"]]
+    shortest = found.groupby(["map", "planner"])[["line_length", "length"]].min()
+    graph = [
+        _reference(shortest["line_length"], name, EXACT.get(planner, planner))
+        for name, planner in zip(trials["map"], trials["planner"], strict=True)
+    ]
+    pixels = [_reference(shortest["length"], name, "inflated_astar") for name in trials["map"]]
+    known = trials["planner"].isin({*EXACT, *EXACT.values()})
+    gap = (trials["line_length"] / pd.Series(graph, index=trials.index) - 1).where(known)
+    above = trials["length"] / pd.Series(pixels, index=trials.index) - 1
+    return trials.assign(gap=gap, above_pixels=above)
+
+
+def _reference(lengths: pd.Series, name: str, planner: str) -> float:
+    return float(lengths.get((name, planner), float("nan")))
+
+
+def summarise_methods(trials: pd.DataFrame) -> pd.DataFrame:
+    """Summarise each method over the scenes.
+
+    Parameters
+    ----------
+    trials : DataFrame
+        As `with_references` gives them.
+
+    Returns
+    -------
+    DataFrame
+        planner, scenes, n, found, success with its interval over scenes; means over the trials
+        that found a path of f, gap and above_pixels; mean epochs and evaluations and quartiles of
+        seconds of all trials; the paper's f, generations and seconds.
+    """
+    rows = []
+    for planner, group in trials.groupby("planner"):
+        rates = group.groupby("map")["feasible"].mean()
+        low, high = wilson(float(rates.mean()), len(rates))
+        evolves = group["epochs"].gt(0).any()
+        paper = PAPER.get(str(planner))
+        rows.append(
+            {
+                "planner": planner,
+                "scenes": len(rates),
+                "n": len(group),
+                "found": int(group["feasible"].sum()),
+                "success": rates.mean(),
+                "success_low": low if evolves else float("nan"),
+                "success_high": high if evolves else float("nan"),
+                "f": group["line_length"].mean(),
+                "gap": group["gap"].mean(),
+                "worst_gap": group["gap"].max(),
+                "above_pixels": group["above_pixels"].mean(),
+                "epochs": group["epochs"].mean() if evolves else float("nan"),
+                "evaluations": group["evaluations"].mean() if evolves else float("nan"),
+                **{f"seconds_{k}": v for k, v in spread(group["plan_time_s"])._asdict().items()},
+                "paper_f": _or_nan(paper.length if paper else None),
+                "paper_epochs": _or_nan(paper.generations if paper else None),
+                "paper_seconds": paper.seconds if paper else float("nan"),
+            }
+        )
+    rows.sort(key=lambda row: rank(str(row["planner"])))
+    return pd.DataFrame(rows)
+
+
+def _or_nan(value: float | None) -> float:
+    return float("nan") if value is None else value
+
+
+def _methods(rows: pd.DataFrame) -> Table:
+    shown = [
+        {
+            "Method": label(row["planner"]),
+            "Trials": number(row["n"]),
+            "Found, %": percent(row["success"]),
+            "95 %": percent_range((row["success_low"], row["success_high"])),
+            "f": _tenth(row["f"]),
+            "f, paper": _tenth(row["paper_f"]),
+            "f above shortest, %": _part(row["gap"]),
+            "Octile above A* on pixels, %": _part(row["above_pixels"]),
+            "Generations": _tenth(row["epochs"]),
+            "Generations, paper": _tenth(row["paper_epochs"]),
+            "Evaluations": number(round(row["evaluations"])) if row["epochs"] > 0 else NOTHING,
+            "Time, ms": middle(*(1000 * row[f"seconds_{k}"] for k in ("median", "q1", "q3"))),
+            "Time, paper, s": number(row["paper_seconds"]),
+        }
+        for _, row in rows.iterrows()
+    ]
+    return Table(
+        "m22",
+        "M22 Sec. III over the scenes. Found: the mean of the scenes' rates with its 95 % Wilson "
+        "interval over scenes. f: mean length of the straight lines of paths found, in pixels. "
+        "Above shortest: mean of f over the shortest path of the same graph. Octile: mean length "
+        "of the path's fields over that of A* on the pixel grid, obstacles grown alike. "
+        "Generations and evaluations: means of all trials. Time: from picture to path, median "
+        "(quartiles).",
+        rows,
+        pd.DataFrame(shown),
+        heads=1,
+    )
+
+
+def _tenth(value: float) -> str:
+    return NOTHING if pd.isna(value) else f"{value:.1f}".removesuffix(".0")
+
+
+def _part(value: float) -> str:
+    return NOTHING if pd.isna(value) else f"{100 * value:.1f}"
+
+
+def _scenes(trials: pd.DataFrame) -> Table:
+    rows, shown = [], []
+    names = [name for name in MAPS if name in set(trials["map"])]
+    others = sorted(set(trials["map"]) - set(names))
+    for name in (*names, *others):
+        here = trials[trials["map"] == name]
+        row: dict[str, object] = {"map": name, "map_source": here["map_source"].iloc[0]}
+        for planner, group in here.groupby("planner"):
+            row[f"{planner} found"] = group["feasible"].mean()
+            row[f"{planner} f"] = group["line_length"].mean()
+            row[f"{planner} length"] = group["length"].mean()
+            row[f"{planner} epochs"] = group["epochs"].mean()
+        rows.append(row)
+        get = lambda key, row=row: row.get(key, float("nan"))  # noqa: E731
+        shown.append(
+            {
+                "Scene": label(name, str(row["map_source"])),
+                "Shortest f": _tenth(get("visibility_dijkstra f")),
+                "Found, %": _rate(get("visibility_ga found")),
+                "f": _tenth(get("visibility_ga f")),
+                "Generations": _tenth(get("visibility_ga epochs")),
+                "Unlimited: found, %": _rate(get("visibility_ga_unlimited found")),
+                "Unlimited: f": _tenth(get("visibility_ga_unlimited f")),
+                "Resized: f": _tenth(get("visibility_ga_resized f")),
+                "Corners: shortest f": _tenth(get("visibility_dijkstra_corners f")),
+                "Corners: f": _tenth(get("visibility_ga_corners f")),
+                "GA 3: f": _tenth(get("inflated_ga3 f")),
+                "Pixels: octile": _tenth(get("inflated_astar length")),
+            }
+        )
+    return Table(
+        "m22_scenes",
+        "Scene by scene: mean f, in pixels, of the trials that found a path, and the exact "
+        "shortest f on the graph of axes' ends and on that of corners. The last column is the "
+        "octile length of the shortest path on the pixel grid, which moves in eight directions "
+        "only.",
+        pd.DataFrame(rows),
+        pd.DataFrame(shown),
+        heads=1,
+    )
+
+
+def _rate(value: float) -> str:
+    return NOTHING if pd.isna(value) else percent(value)
+
+
+def _stages(trials: pd.DataFrame) -> Table:
+    times = pd.DataFrame([json.loads(text) for text in trials["stage_times_s"]])
+    stages = [name for name in STAGES if name in times]
+    times = times.reindex(columns=stages).assign(planner=trials["planner"].to_numpy())
+    medians = times.groupby("planner").median()
+    medians = medians.loc[sorted(medians.index, key=rank)].reset_index()
+    shown = [
+        {
+            "Method": label(row["planner"]),
+            **{f"{name.capitalize()}, ms": number(1000 * row[name]) for name in stages},
+        }
+        for _, row in medians.iterrows()
+    ]
+    return Table(
+        "m22_stages",
+        "Where the time goes: median of each stage over all trials. Resizing is the search for the "
+        "coarsest scale that loses nothing; planning, of what is not the paper's, the whole search "
+        "on the pixel grid.",
+        medians,
+        pd.DataFrame(shown),
+        heads=1,
+    )
+
+
+def _remarks(rows: pd.DataFrame) -> tuple[str, ...]:
+    by = rows.set_index("planner")
+    remarks = []
+    if {"visibility_ga", "visibility_ga_unlimited"} <= set(by.index):
+        limited, unlimited = by.loc["visibility_ga"], by.loc["visibility_ga_unlimited"]
+        better = 1 - unlimited["f"] / limited["f"]
+        remarks.append(
+            f"Without the limit f is {100 * better:.1f} % lower (paper: 7.8 %), and "
+            f"{100 * unlimited['gap']:.1f} % above the shortest path of the graph in the mean, "
+            f"{100 * unlimited['worst_gap']:.1f} % at worst."
+        )
+        remarks.append(
+            f"With the limit {percent(1 - limited['success'])} % of the runs end without any path: "
+            "every chromosome with a line that is not free counts the same, so until one is found "
+            "by chance nothing leads to it, and 20 generations without one end the run. The paper "
+            "reports a path in each of its ten tests."
+        )
+    if {"visibility_dijkstra", "visibility_ga"} <= set(by.index):
+        remarks.append(
+            "The graph has a few dozen points: the exact answer takes microseconds (search, in the "
+            "table of stages), less than a few generations of the genetic algorithm. The paper's "
+            "83 s for A* are those of its implementation, which compares whole images; it "
+            f"says that {100 * IMAGE_SHARE:.0f} % of the genetic algorithm's time goes there, too."
+        )
+    remarks += [
+        "Here each pair of points is tested once, pixel by pixel along its line, before the search "
+        "begins, which then only looks lengths up.",
+        "Resizing is part of the paper's further work: lengths are then those of a coarser "
+        "picture, so f may be a little above or below. The search for the scale works on the full "
+        "picture and takes longer than it saves, unless a scale is kept for many plans.",
+        "KG18's planner is what the paper's other further work asks for, a genetic algorithm over "
+        "free (x, y) points: it minimises the sum of the weights of the fields, by which a "
+        "diagonal step costs no more than a straight one, and stops at its first free path, so "
+        "its paths are long.",
+        "The paper's seconds are those of another machine and language.",
+    ]
+    return tuple(remarks)
