@@ -120,9 +120,9 @@ class VisibilityGraph(NamedTuple):
         # one another: a line between far ones could enter a block that the small line does not.
         ends = np.array([problem.start, problem.target], dtype=np.int32)
         through = self._representatives(fields, problem)
-        bends = np.stack((through[[0, -1], 0], ends[:, 1]), axis=1)  # within the ends' blocks
-        if problem.corner_cutting is not CornerCutting.NO_DIAGONALS:
-            bends = ends
+        bends = ends
+        if problem.corner_cutting is CornerCutting.NO_DIAGONALS:  # within the ends' blocks
+            bends = np.stack((through[[0, -1], 0], ends[:, 1]), axis=1)
         return polyline(np.concatenate((ends[:1], bends[:1], through, bends[1:], ends[1:])))
 
     def _representatives(self, blocks: Points, problem: Query) -> Points:
