@@ -220,3 +220,26 @@ class GridMap:
         offset = np.array([0.5, self.rows - 0.5]) * self.resolution
         corner = np.array([x, y] if yaw == 0.0 else [0.0, 0.0])
         return np.array([self.resolution, -self.resolution]), offset + corner
+
+
+def nearest_free(obstacles: NDArray[np.bool_], place: Field) -> Field | None:
+    """Find the free field nearest to a place.
+
+    Parameters
+    ----------
+    obstacles : (rows, cols) bool
+        True where a field cannot be passed.
+    place : (x, y)
+        A field.
+
+    Returns
+    -------
+    (x, y) or None
+        The nearest by the Euclidean distance, of several the first from top and left; None if
+        nothing is free.
+    """
+    y, x = np.nonzero(~obstacles)
+    if not len(x):
+        return None
+    first = int(np.argmin((x - place[0]) ** 2 + (y - place[1]) ** 2))
+    return int(x[first]), int(y[first])

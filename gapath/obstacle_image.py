@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import InputError, require
-from gapath.grid import OBSTACLE, SCALE, Field
+from gapath.grid import OBSTACLE, SCALE, nearest_free
 from gapath.problem import Query
 
 Picture = NDArray[np.bool_]
@@ -179,26 +179,3 @@ def dilate(obstacles: Picture, growth: int) -> Picture:
     side = 2 * growth + 1
     square = footprint_rectangle((side, side), decomposition="separable")
     return np.asarray(dilation(obstacles, square))
-
-
-def nearest_free(obstacles: Picture, place: Field) -> Field | None:
-    """Find the free pixel nearest to a place.
-
-    Parameters
-    ----------
-    obstacles : (rows, cols) bool
-        The picture.
-    place : (x, y)
-        A pixel.
-
-    Returns
-    -------
-    (x, y) or None
-        The nearest by the Euclidean distance, of several the first from top and left; None if
-        nothing is free.
-    """
-    y, x = np.nonzero(~obstacles)
-    if not len(x):
-        return None
-    first = int(np.argmin((x - place[0]) ** 2 + (y - place[1]) ** 2))
-    return int(x[first]), int(y[first])

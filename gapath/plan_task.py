@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from gapath.events import Event, Evolved, Surveyed, TrialFinished, TrialStarted
 from gapath.graph import shortest_path
 from gapath.metrics import clearances, line_length, path_metrics
-from gapath.problem import Particular, Plan, Planner, PlanStatus, Problem
+from gapath.problem import Particular, Plan, Planner, Problem
 from gapath.simulation import TimedPlan, plan_trials
 from gapath.task import Batch, Trial
 
@@ -144,7 +144,7 @@ class PlanTask:
     def line(self, rows: list[PlanRow]) -> str:
         """Sum trials up in one line."""
         if rows[0].status == "infeasible":
-            return "no path exists"
+            return _no_path(rows[0])
         found = sum(row.feasible for row in rows)
         return f"{found} of {len(rows)} found, median {_median_time(rows)}"
 
@@ -152,7 +152,7 @@ class PlanTask:
 def _effort(row: PlanRow) -> dict[str, object]:
     """Tell what applies: a genetic algorithm has epochs, a graph search has expansions."""
     if row.status == "infeasible":
-        return {"reason": PlanStatus.INFEASIBLE.sentence}
+        return {"reason": _no_path(row)}
     lines: dict[str, object] = {
         "cost" if row.feasible else "best cost": f"{row.cost:g}",
         "optimal cost": f"{row.optimal_cost:g}",
@@ -164,6 +164,12 @@ def _effort(row: PlanRow) -> dict[str, object]:
     if row.expansions:
         lines["expansions"] = row.expansions
     return lines | {"time": _median_time([row])}
+
+
+def _no_path(row: PlanRow) -> str:
+    if math.isinf(row.optimal_cost):
+        return "no path exists: the target cannot be reached from the start"
+    return "no path in the planner's graph; the map has one for a robot that is a point"
 
 
 def _median_time(rows: list[PlanRow]) -> str:

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.errors import require
-from gapath.grid import Field, GridMap, PlanningMap
+from gapath.errors import InputError, require
+from gapath.grid import Field, GridMap, PlanningMap, nearest_free
 from gapath.rng import Stream
 
 
@@ -85,12 +85,12 @@ class Problem:
                 list(place),
                 f"a field [x, y] with 0 <= x < {self.map.cols}, 0 <= y < {self.map.rows}",
             )
-            require(
-                not self.map.obstacles[place[1], place[0]],
-                f"map.{name}",
-                f"{list(place)}, an obstacle",
-                "a free field",
-            )
+            if self.map.obstacles[place[1], place[0]]:
+                nearest = nearest_free(self.map.obstacles, place)
+                hint = f"; the nearest is {list(nearest)}" if nearest else ", but there is none"
+                raise InputError(
+                    f"map.{name}", f"{list(place)}, an obstacle", f"a free field{hint}"
+                )
 
 
 def _is_pair(place: Any) -> bool:
