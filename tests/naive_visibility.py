@@ -1,7 +1,7 @@
 """Obvious slow twins of M22's planner, written from its Sec. II and the description of its library.
 
-The library is geneticalgorithm2, whose generations differ by version: v64 (up to 6.6), v67 (6.7
-and 6.8), v69.
+The library is geneticalgorithm2, whose generations differ by version: v64 (up to 6.6.0), v67
+(6.7), v69 (6.8 on).
 """
 
 import itertools
@@ -94,9 +94,9 @@ def path_length(lengths, chromosome, ends_are_genes):
 
 def sizes(planner):
     """Elite, and parents that stay: as many more as make the children come in pairs."""
-    elite = floor(planner.population * planner.elite_portion)
-    if planner.elite_portion > 0:
-        elite = max(elite, 1)
+    elite = ceil(planner.population * planner.elite_portion)
+    if planner.ga2_profile == "v64" and elite > 1:
+        elite = floor(planner.population * planner.elite_portion)
     parents = floor(planner.population * planner.parents_portion)
     if (planner.population - parents) % 2:
         parents += 1
@@ -176,8 +176,9 @@ def evolve(lengths, planner, genes, penalty, words):
         length = path_length(lengths, chromosome, ends_are_genes)
         return (penalty if length is None else length), chromosome
 
+    drawn = points - 1 if version == "v64" else points  # up to 6.6.0 never the end at first
     population = [
-        scored([naive.high(words.take(), points) for _ in range(genes)])
+        scored([naive.high(words.take(), drawn) for _ in range(genes)])
         for _ in range(planner.population)
     ]
     evaluations = planner.population
@@ -193,7 +194,7 @@ def evolve(lengths, planner, genes, penalty, words):
         better = score < best
         if len(epochs) == planner.max_epochs:
             return epochs, evaluations
-        if not patience and not (better and version == "v64"):  # up to 6.6 children can save it
+        if not patience and not (better and version == "v64"):  # up to 6.6.0 children can save it
             return epochs, evaluations
         stale = 0 if better else stale + 1
         best = min(best, score)

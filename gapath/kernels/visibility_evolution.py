@@ -29,14 +29,16 @@ SETTINGS = np.dtype(
         ("roulette_skips_elites", np.bool_),
         ("distinct_parents", np.bool_),
         ("middle_includes_end", np.bool_),
+        ("first_excludes_end", np.bool_),
         ("first_best_is_last_drawn", np.bool_),
         ("offspring_can_save", np.bool_),
         ("penalty", np.int64),
     ]
 )
 """Settings of the genetic algorithm, as the kernel takes them: an array of one row. With
-`breeders` 0 every parent breeds with the probability of crossover; `penalty` is the fitness
-where a restriction is broken, in units of 1 / SCALE."""
+`breeders` 0 every parent breeds with the probability of crossover; with `first_excludes_end` no
+individual of the first population has the end as a gene; `penalty` is the fitness where a
+restriction is broken, in units of 1 / SCALE."""
 
 EPOCHS = np.dtype([("best", np.int64), ("sum", np.int64)])
 """What happened in an epoch: fitness of the best individual and of all together, 1 / SCALE."""
@@ -161,10 +163,11 @@ def evolve(
     pairs = np.empty((size - parents) // 2, dtype=np.uint64)
     of_genes = np.empty(3 * genes, dtype=np.uint64)
 
+    drawn = points - 1 if setting["first_excludes_end"] else points
     for i in range(size):
         fill(stream, of_genes[:genes])
         for gene in range(genes):
-            population[i, gene] = high(of_genes[gene], points)
+            population[i, gene] = high(of_genes[gene], drawn)
         scores[i] = fitness(lengths, population[i], setting)
     best = scores.min()
     if setting["first_best_is_last_drawn"]:

@@ -4,6 +4,7 @@ Obstacles become keypoints, keypoints a visibility graph, and a chromosome is a 
 its points; the fitness is the path's length, eq. (7).
 """
 
+import math
 from dataclasses import dataclass
 from functools import partial
 
@@ -39,8 +40,8 @@ class Planner(Surveyor):
     keypoints, corner_tolerance, push_out, resize
         As of `gapath.visibility_graph.Surveyor`.
     ga2_profile : str
-        Version of the library geneticalgorithm2 whose generations these are: "v64" (up to 6.6),
-        "v67" (6.7 and 6.8) or "v69".
+        Version of the library geneticalgorithm2 whose generations these are: "v64" (up to
+        6.6.0), "v67" (6.7) or "v69" (6.8 on).
     genes : str or int
         Genes of a chromosome: "obstacles" or a number are turns between start and end; with
         "obstacles_and_ends" these two are genes as well, which a penalty holds in place.
@@ -53,7 +54,8 @@ class Planner(Surveyor):
     mutation_probability : float
         For each gene.
     elite_portion, parents_portion : float
-        Of the population; the elite is at least one individual unless it is 0.
+        Of the population; the elite is rounded up, with "v64" down but to no less than one
+        individual unless it is 0.
     crossover_probability : float
         That a parent breeds; with "v67" the portion of those that do, without meaning in "v69".
     """
@@ -99,7 +101,7 @@ class Planner(Surveyor):
     @property
     def _elites(self) -> int:
         portion = self.population * self.elite_portion
-        return 1 if 0 < portion < 1 else int(portion)
+        return int(portion) if self.ga2_profile == "v64" and portion > 1 else math.ceil(portion)
 
     @property
     def _parents(self) -> int:
@@ -123,6 +125,7 @@ class Planner(Surveyor):
         settings["roulette_skips_elites"] = not old
         settings["distinct_parents"] = not old
         settings["middle_includes_end"] = not old
+        settings["first_excludes_end"] = old  # so does OppOpPopInit, its library, before 2.0
         settings["first_best_is_last_drawn"] = old
         settings["offspring_can_save"] = old
         # f(P)max: the perimeter of the picture
