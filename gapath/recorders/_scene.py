@@ -200,9 +200,10 @@ def _text(
     if surveyed:
         moving += "- **red**: obstacles grown by the robot's radius, keypoints\n"
         moving += "- **thin purple**: lines between keypoints that meet no obstacle\n"
+    point = " of a robot that is a point" if surveyed else ""
     legend = (
         f"{moving}"
-        "- **green**: the path found\n- **blue**: a path of least cost\n"
+        f"- **green**: the path found\n- **blue**: a path of least cost{point}\n"
         "- **map**: the brighter, the dearer; white: obstacle\n"
     )
     return document(run, finished.status.sentence.capitalize(), rows, legend)
