@@ -12,7 +12,18 @@ from tabulate import tabulate
 
 from benchmarks.measure import Quartiles, Row, machine
 
-QUESTIONS = ("ga_run", "row_column", "exact", "sweep", "logging", "drives", "cold_start")
+QUESTIONS = (
+    "ga_run",
+    "row_column",
+    "visibility",
+    "visibility_growth",
+    "visibility_agreement",
+    "exact",
+    "sweep",
+    "logging",
+    "drives",
+    "cold_start",
+)
 
 
 def columns(rows: list[Row]) -> list[str]:

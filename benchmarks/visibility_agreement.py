@@ -1,4 +1,4 @@
-"""``python -m benchmarks.visibility_agreement``: are we geneticalgorithm2? M22's GA, compared.
+"""M22's genetic algorithm: whether it is that of the library geneticalgorithm2.
 
 Our profiles against runs of the library that are kept in ``tests/reference``, on the same graphs
 with the same settings: as many seeds, other random numbers. For the best f, generations and
@@ -120,8 +120,7 @@ def agreement(profile: str, name: str, **settings: Any) -> dict[str, Row]:
     return {measure: compared(found[measure], theirs[measure]) for measure in MEASURES}
 
 
-def rows() -> list[Row]:
-    """Give the table: a row for each version and scene."""
+def measure(quick: bool) -> list[Row]:
     table = []
     for profile, version in PROFILES.items():
         for name in SCENES:
@@ -131,9 +130,3 @@ def rows() -> list[Row]:
                 row |= {f"{measure}: {key}": value for key, value in found.items()}
             table.append(row)
     return table
-
-
-if __name__ == "__main__":
-    from benchmarks.__main__ import table as written
-
-    print(written(rows()))

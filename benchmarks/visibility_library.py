@@ -26,6 +26,7 @@ import sys
 import warnings
 from collections.abc import Callable
 from importlib import metadata
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -47,8 +48,14 @@ SETTINGS = {
 }
 """M22 Table I, and conf/planner/visibility_ga.yaml for what it leaves open."""
 
-RUNS_ON = (3, 11)
-"""The newest Python on which the library runs."""
+
+def unavailable() -> str | None:
+    """Say why the library cannot run here, if so."""
+    if not find_spec("geneticalgorithm2"):
+        return "skipped: the bench extra is not installed"
+    if sys.version_info >= (3, 12):
+        return "skipped: geneticalgorithm2 needs Python 3.11"
+    return None
 
 
 def looked_up(lengths: Any, penalty: float) -> Callable[[Any], float]:
@@ -83,6 +90,18 @@ def looked_up(lengths: Any, penalty: float) -> Callable[[Any], float]:
     return target
 
 
+class Counted:
+    """A target function that counts its calls."""
+
+    def __init__(self, target: Callable[[Any], float]):
+        self.target, self.calls = target, 0
+
+    def __call__(self, chromosome: Any) -> float:
+        """Call the target function."""
+        self.calls += 1
+        return self.target(chromosome)
+
+
 class GA:
     """The library's genetic algorithm on a target function."""
 
@@ -92,27 +111,22 @@ class GA:
 
         version = metadata.version("geneticalgorithm2")
         self.new = tuple(map(int, version.split("."))) >= (6, 8)
-        self.evaluations = 0
         settings = SETTINGS | changed
         if self.new:
             del settings["crossover_probability"]  # said to have no meaning
         self.quiet = {"progress_bar_stream": None} if self.new else {"disable_progress_bar": True}
 
-        def counted(chromosome: Any) -> float:
-            self.evaluations += 1
-            return target(chromosome)
-
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # newer versions want the target elsewhere
             self.library = geneticalgorithm2(
-                counted,
+                target,
                 dimension=genes,
                 variable_type="int",
                 variable_boundaries=[[0, points - 1]] * genes,
                 algorithm_parameters=settings,
             )
 
-    def run(self, seed: int) -> tuple[float, int, int]:
+    def run(self, seed: int) -> tuple[float, int]:
         """Run once.
 
         Parameters
@@ -126,15 +140,12 @@ class GA:
             The best value.
         generations : int
             Populations that were ranked, the first one included.
-        evaluations : int
-            Calls of the target function.
         """
-        self.evaluations = 0
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # Python 3.11 of floats as bounds of integers
             self.library.run(no_plot=True, disable_printing=True, seed=seed, **self.quiet)
         report = self.library.report
-        return float(report[-1]), len(report), self.evaluations
+        return float(report[-1]), len(report)
 
 
 def export(folder: Path) -> None:
@@ -163,12 +174,18 @@ def reference(folder: Path, seeds: int) -> dict[str, Any]:
     for name in SCENES:
         graph = json.loads((folder / f"{name}.json").read_text("utf-8"))
         lengths = np.array(graph["lengths"], dtype=np.int64)
-        ga = GA(looked_up(lengths, graph["penalty"]), len(lengths), graph["genes"])
-        found = [ga.run(seed) for seed in range(seeds)]
-        f, generations, evaluations = map(list, zip(*found, strict=True))
+        target = Counted(looked_up(lengths, graph["penalty"]))
+        ga = GA(target, len(lengths), graph["genes"])
+        f, generations, evaluations = [], [], []
+        for seed in range(seeds):
+            before = target.calls
+            best, ranked = ga.run(seed)
+            f.append(round(best, 3))
+            generations.append(ranked)
+            evaluations.append(target.calls - before)
         scenes[name] = {
             "lengths_sha256": digest(lengths),
-            "f": [round(value, 3) for value in f],
+            "f": f,
             "generations": generations,
             "evaluations": evaluations,
         }

@@ -15,7 +15,20 @@ from strategies import planner, problems
 
 sys.path.insert(0, str(Path(__file__).parents[2]))  # benchmarks is not installed
 
-from benchmarks import __main__, drives, exact, ga_run, logging, row_column, sweep, textbook
+from benchmarks import (
+    __main__,
+    drives,
+    exact,
+    ga_run,
+    logging,
+    row_column,
+    sweep,
+    textbook,
+    visibility,
+    visibility_agreement,
+    visibility_growth,
+    visibility_library,
+)
 from benchmarks.measure import MAPS, SETTINGS, interleave, make_planner, make_problem, quartiles
 from gapath.problem import CornerCutting, PlanStatus, Problem
 from gapath.rng import stream
@@ -125,6 +138,77 @@ def test_deap_succeeds_as_often(deap):
     rate = (ours + theirs) / (2 * trials)
     assert 0.1 < rate < 0.9
     assert abs(ours - theirs) / trials < 3 * np.sqrt(2 * rate * (1 - rate) / trials)
+
+
+def is_timed(row):
+    return row["gapath"].lower > 0 and (not row.get("rival") or row["rival / gapath"].lower > 0)
+
+
+@pytest.fixture
+def library():
+    if why := visibility_library.unavailable():
+        pytest.skip(why)
+
+
+def test_m22s_pieces_are_timed_against_every_rival(library, monkeypatch):
+    monkeypatch.setattr(visibility, "MAPS", visibility.MAPS[:1])
+    rows = visibility.measure(quick=True)
+    assert all(map(is_timed, rows))
+    rivals = [row["rival"] for row in rows if row["work"] == "image to path"]
+    assert rivals == ["the paper", *visibility.TARGETS]
+    parts = [row["gapath"].median for row in rows if row["work"].startswith("...")]
+    assert len(parts) == 5 and np.isclose(sum(parts), rows[0]["gapath"].median)
+    assert [row["rival"] for row in rows[-3:]] == [*visibility.TARGETS, "XOR of images"]
+
+
+def test_without_the_library_m22s_rows_say_why(monkeypatch):
+    monkeypatch.setattr(visibility, "MAPS", visibility.MAPS[:1])
+    monkeypatch.setattr(visibility_library, "find_spec", lambda name: None)
+    rows = [row for row in visibility.measure(quick=True) if row.get("rival") in visibility.TARGETS]
+    assert len(rows) == 4
+    for row in rows:
+        assert row["its time"] == "skipped: the bench extra is not installed"
+        assert row["gapath"].lower > 0 and "rival / gapath" not in row
+
+
+def test_lines_that_another_test_finds_free_are_noticed(monkeypatch):
+    scene = visibility_agreement.Scene.of(visibility.MAPS[0])
+    assert visibility.time_lines(scene, 30, 1)["rival / gapath"].median > 0
+    monkeypatch.setattr(visibility, "drawn_and_compared", lambda image, line: True)
+    with pytest.raises(RuntimeError, match=r"lines free: \d+ and 30 of 30"):
+        visibility.time_lines(scene, 30, 1)
+
+
+def test_both_target_functions_of_the_library_are_the_same():
+    scene = visibility_agreement.Scene.of(visibility.MAPS[0])
+    one, other = (make(scene.lengths, scene.penalty) for make in visibility.TARGETS.values())
+    chromosomes = np.random.default_rng(0).integers(0, len(scene.lengths), (2000, scene.genes))
+    values = [one(chromosome.astype(float)) for chromosome in chromosomes]
+    assert values == [other(chromosome.astype(float)) for chromosome in chromosomes]
+    assert 0 < values.count(scene.penalty) < len(values)
+
+
+def test_the_library_here_does_what_was_kept(library, tmp_path):
+    visibility_library.export(tmp_path)
+    found, kept = visibility_library.reference(tmp_path, 3), visibility_agreement.reference("v69")
+    if found["geneticalgorithm2"] != kept["geneticalgorithm2"]:
+        pytest.skip(f"geneticalgorithm2 {found['geneticalgorithm2']}, kept were runs of another")
+    for name, scene in kept["scenes"].items():
+        for key in visibility_agreement.MEASURES:
+            assert found["scenes"][name][key] == scene[key][:3]
+
+
+def test_growing_pictures_are_timed_with_and_without_resizing(monkeypatch):
+    monkeypatch.setattr(visibility_growth, "SIZES", ((200, 150), (400, 300)))
+    rows = visibility_growth.measure(quick=True)
+    assert [(row["picture"], row["obstacles"]) for row in rows] == [
+        (size, count) for count in (6, 20) for size in ("200 x 150", "400 x 300")
+    ]
+    for row in rows:
+        assert row["whole"].median > sum(row[stage].median for stage in visibility_growth.STAGES)
+        assert row["resize: whole"].median > row["resize: search"].median > 0
+        assert row["without search"].median > row["whole / resized"].median > 0
+        assert row["resize: scale"] >= 1
 
 
 def test_quartiles_and_orders():
