@@ -116,14 +116,21 @@ class VisibilityGraph(NamedTuple):
         fields = polyline(self.points[indices])
         if self.scale == 1:
             return fields
-        # From block to block through their representatives, which lie straight or diagonally to
-        # one another: a line between far ones could enter a block that the small line does not.
+        # From block to block, straight to the next one's representative or over the corner that
+        # both share: any other line could enter a third block.
+        step = np.diff(fields, axis=0)
+        diagonal = step.all(axis=1)
+        through = np.repeat(self._representatives(fields, problem)[:, np.newaxis], 3, axis=1)
+        leave = fields[:-1] * self.scale + np.where(step > 0, self.scale - 1, 0)
+        through[:-1][diagonal, 1] = leave[diagonal]
+        through[:-1][diagonal, 2] = (leave + step)[diagonal]
+
         ends = np.array([problem.start, problem.target], dtype=np.int32)
-        through = self._representatives(fields, problem)
         bends = ends
         if problem.corner_cutting is CornerCutting.NO_DIAGONALS:  # within the ends' blocks
-            bends = np.stack((through[[0, -1], 0], ends[:, 1]), axis=1)
-        return polyline(np.concatenate((ends[:1], bends[:1], through, bends[1:], ends[1:])))
+            bends = np.stack((through[[0, -1], 0, 0], ends[:, 1]), axis=1)
+        inner = through.reshape(-1, 2)
+        return polyline(np.concatenate((ends[:1], bends[:1], inner, bends[1:], ends[1:])))
 
     def _representatives(self, blocks: Points, problem: Query) -> Points:
         last = (problem.map.rows - 1) % self.scale, (problem.map.cols - 1) % self.scale
