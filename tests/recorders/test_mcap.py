@@ -27,12 +27,13 @@ from gapath.events import (
     RunFinished,
     RunStarted,
     Stepped,
+    Surveyed,
     TrialFinished,
     TrialStarted,
 )
 from gapath.grid import GridMap
 from gapath.navigation import Mode
-from gapath.problem import CornerCutting, Evolution, PlanStatus, Problem
+from gapath.problem import CornerCutting, Evolution, Graph, PlanStatus, Problem
 from gapath.recorders import _cdr, _log_format, _messages, mcap, none
 
 TYPES = _log_format.TYPES
@@ -76,6 +77,16 @@ def evolutions(draw):
         draw(arrays(np.int32, (epochs, count, 2))),
         draw(st.text()),
     )
+
+
+@st.composite
+def graphs(draw):
+    """Any graph; its picture need not have whole bytes."""
+    shape = st.tuples(st.integers(1, 9), st.integers(1, 9))
+    obstacles = draw(arrays(np.bool_, shape))
+    pairs = st.tuples(st.integers(0, 9), st.just(2))
+    points, edges = draw(arrays(np.int32, pairs)), draw(arrays(np.int32, pairs))
+    return Graph(obstacles, draw(st.integers(1, 2**32 - 1)), points, edges)
 
 
 def drives(draw, grid, step, trial):
@@ -125,6 +136,8 @@ def runs(draw):
             events += drives(draw, grid, step, trial)
             events.append(DriveFinished(step, trial, draw(st.integers(0, 2)), draw(counts)))
             continue
+        if draw(st.booleans()):
+            events.append(Surveyed(step, trial, draw(graphs())))
         for call in range(draw(st.integers(0, 2))):
             events.append(Evolved(step, trial, call, draw(evolutions())))
         status, cost, numbers = draw(st.sampled_from(PlanStatus)), draw(st.floats()), draw(counts)
