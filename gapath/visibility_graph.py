@@ -10,7 +10,7 @@ from gapath.errors import require
 from gapath.grid import OBSTACLE, SCALE
 from gapath.kernels.raster import polyline
 from gapath.kernels.visibility_graph import graph_lengths, shortest
-from gapath.keypoints import Points, axis_ends, corners, label, place
+from gapath.keypoints import Points, Vector, axis_ends, corners, label, place
 from gapath.obstacle_image import Clearance, Picture, dilate
 from gapath.problem import CornerCutting, Graph, Plan, PlanStatus, Query
 from gapath.resizing import coarsest_scale, growth_at, shrunk
@@ -176,6 +176,26 @@ class Surveyor(Clearance):
             "a number of pixels in (0, 100]",
         )
 
+    def check(self, problem: Query) -> None:
+        """Refuse a start or target where the robot does not fit, and too many keypoints.
+
+        Parameters
+        ----------
+        problem : Query
+            Start and target on a known map.
+
+        Raises
+        ------
+        InputError
+            As of `gapath.obstacle_image.Clearance.check` and `survey`.
+        """
+        super().check(problem)
+        self.obstacle_count(problem)
+
+    def obstacle_count(self, problem: Query) -> int:
+        """Count the obstacles of the graph of a problem; raises InputError as `survey` does."""
+        return self._found(self._grown(problem, Stages())[0])[1]
+
     def survey(self, problem: Query, stages: Stages) -> VisibilityGraph:
         """Make the graph of a problem.
 
@@ -196,6 +216,20 @@ class Surveyor(Clearance):
         InputError
             If there are too many keypoints.
         """
+        grown, scale = self._grown(problem, stages)
+        found, count = self._found(grown)
+        ends = np.array([problem.start, problem.target], dtype=np.int32) // scale
+        points = np.concatenate((ends[:1], place(found, grown, self.push_out), ends[1:]))
+        stages.end("keypoints")
+
+        lengths = np.empty((len(points), len(points)), dtype=np.int64)
+        table = np.where(grown, np.int32(OBSTACLE), np.int32(0))
+        graph_lengths(table, points, int(problem.corner_cutting), lengths)
+        stages.end("graph")
+        return VisibilityGraph(grown, points, lengths, scale, count)
+
+    def _grown(self, problem: Query, stages: Stages) -> tuple[Picture, int]:
+        """Give the picture on which lines are drawn, and its scale."""
         obstacles, growth, scale = self.obstacles(problem), self.growth(problem), 1
         if self.resize:
             scale = coarsest_scale(obstacles, growth, (problem.start, problem.target))
@@ -203,7 +237,10 @@ class Surveyor(Clearance):
             stages.end("resizing")
         grown = dilate(obstacles, growth)
         stages.end("dilation")
+        return grown, scale
 
+    def _found(self, grown: Picture) -> tuple[list[tuple[Vector, Vector]], int]:
+        """Find keypoints, as `place` takes them, and count obstacles."""
         labels, count = label(grown)
         by_axes = self.keypoints == "axes"
         found = axis_ends(labels) if by_axes else corners(grown, self.corner_tolerance)
@@ -214,12 +251,4 @@ class Surveyor(Clearance):
             f"at most {MAX_POINTS - 2}: a larger planner.corner_tolerance or robot_radius, or a"
             " smaller map",
         )
-        ends = np.array([problem.start, problem.target], dtype=np.int32) // scale
-        points = np.concatenate((ends[:1], place(found, grown, self.push_out), ends[1:]))
-        stages.end("keypoints")
-
-        lengths = np.empty((len(points), len(points)), dtype=np.int64)
-        table = np.where(grown, np.int32(OBSTACLE), np.int32(0))
-        graph_lengths(table, points, int(problem.corner_cutting), lengths)
-        stages.end("graph")
-        return VisibilityGraph(grown, points, lengths, scale, count)
+        return found, count

@@ -136,10 +136,34 @@ class Planner(Surveyor):
     def _ends_are_genes(self) -> bool:
         return self.genes == "obstacles_and_ends"
 
-    def _genes(self, graph: VisibilityGraph) -> int:
-        if isinstance(self.genes, int):
-            return self.genes
-        return max(1, graph.obstacle_count) + (2 if self._ends_are_genes else 0)
+    def _genes(self, obstacle_count: int) -> int:
+        genes = self.genes
+        if isinstance(genes, str):
+            genes = max(1, obstacle_count) + (2 if self._ends_are_genes else 0)
+        needed = 4 * genes * (2 * self.population + 3 * self.max_epochs) + 32 * self.max_epochs
+        require(
+            needed <= MAX_BYTES,
+            "planner.max_epochs",
+            f"{self.max_epochs} with {genes} genes: {needed / 2**30:.1f} GiB",
+            "settings that need at most 1 GiB",
+        )
+        return genes
+
+    def check(self, problem: Query) -> None:
+        """Refuse a problem that does not suit.
+
+        Parameters
+        ----------
+        problem : Query
+            Start and target on a known map.
+
+        Raises
+        ------
+        InputError
+            If the robot does not fit at an end, or the map has too many keypoints or obstacles.
+        """
+        super().check(problem)
+        self._genes(self.obstacle_count(problem))
 
     def plan(self, problem: Query, stream: Stream) -> Plan:
         """Make the graph and run the genetic algorithm once.
@@ -164,14 +188,7 @@ class Planner(Surveyor):
         """
         stages = Stages()
         graph = self.survey(problem, stages)
-        genes = self._genes(graph)
-        needed = 4 * genes * (2 * self.population + 3 * self.max_epochs) + 32 * self.max_epochs
-        require(
-            needed <= MAX_BYTES,
-            "planner.max_epochs",
-            f"{self.max_epochs} with {genes} genes: {needed / 2**30:.1f} GiB",
-            "settings that need at most 1 GiB",
-        )
+        genes = self._genes(graph.obstacle_count)
         survey = partial(graph.drawn, problem)
         if not len(graph.shortest(informed=False)[0]):
             return Plan(PlanStatus.INFEASIBLE, survey=survey, stages=stages.seconds)
