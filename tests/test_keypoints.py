@@ -167,6 +167,22 @@ def test_a_disc_has_more_corners_the_less_they_may_miss():
         assert (dx * (x - 50) + dy * (y - 50)) / math.hypot(x - 50, y - 50) > 0.95
 
 
+@pytest.mark.parametrize("tolerance", [1.0, 2.0, 4.0])
+def test_sides_miss_an_outline_by_no_more_than_the_tolerance(tolerance):
+    """All corners of a convex obstacle are found, in the order of its outline."""
+    shape = ellipse(45, 25, 0.4)
+    points = np.array([point for point, _ in corners(shape, tolerance)])
+    (outline,) = measure.find_contours(shape.astype(float), 0.5)
+    ends = np.stack((points, np.roll(points, -1, axis=0)), axis=1)
+    worst = max(min(distance_to_side(point, a, b) for a, b in ends) for point in outline[:, ::-1])
+    assert tolerance / 3 < worst <= tolerance + 1e-9
+
+
+def distance_to_side(point, a, b):
+    along = np.clip((point - a) @ (b - a) / ((b - a) @ (b - a)), 0, 1)
+    return math.hypot(*(point - a - along * (b - a)))
+
+
 @given(pictures(), st.sampled_from([0.3, 1.0, 2.0, 10.0]))
 def test_corners_lie_on_outlines_and_point_away(picture, tolerance):
     """Half a pixel beside an obstacle; further out is none."""

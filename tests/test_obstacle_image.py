@@ -135,6 +135,31 @@ def test_otsus_method_parts_two_clear_levels():
     assert threshold_map("otsu", weights) == light.tolist()
 
 
+def otsu(values):
+    """The value up to which pixels are dark: the means of both classes differ most (Otsu 1979)."""
+
+    def between(threshold):
+        dark = [value for value in values if value <= threshold]
+        light = [value for value in values if value > threshold]
+        apart = sum(dark) / len(dark) - sum(light) / len(light)
+        return len(dark) * len(light) * apart**2
+
+    return max(sorted(set(values))[:-1], key=between)
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(2, 9))
+def test_otsus_method_equals_the_twin(seed, shades):
+    """On any few shades; start and target are as dark as the rest."""
+    random = np.random.default_rng(seed)
+    weights = random.choice(random.choice(255, shades, replace=False), (8, 9)) / 256
+    problem = problem_on(weights)
+    inner = weights.copy()
+    inner[0, 0] = inner[-1, -1] = inner[0, 1]
+    if len(np.unique(inner)) > 1:
+        expected = weights > otsu(weights.ravel().tolist())
+        assert (clearance().obstacles(problem) == expected).all()
+
+
 def test_a_number_is_a_threshold():
     """From this weight on; what no planner may enter is an obstacle with any."""
     weights = np.array([[0.0, 0.25, 0.5, 0.75, 1.0, 0.1]])

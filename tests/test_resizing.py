@@ -124,6 +124,16 @@ def test_a_gap_as_wide_as_the_robot_is_not_closed(growth, top):
         assert gapath.plan(map_of(picture), *ends, planner).status is status
 
 
+def test_floors_that_touch_at_a_corner_are_two():
+    """Between walls from above and from below, which touch at a corner once they are grown."""
+    picture = np.zeros((41, 60), dtype=np.bool_)
+    picture[:17, 18:20] = picture[25:, 28:30] = True
+    ends = (3, 20), (50, 20)
+    assert parts_of_floor(dilate(picture, 4))[1] == 2
+    scale = coarsest_scale(picture, 4, ends)
+    assert scale == max(s for s in range(2, 5) if loses_nothing(picture, 4, s, ends)) > 1
+
+
 def test_where_nothing_works_it_stays_as_it_is():
     free = np.zeros((20, 20), dtype=np.bool_)
     ends = (0, 0), (19, 19)
