@@ -73,10 +73,10 @@ def looked_up(lengths: Any, penalty: float) -> Callable[[Any], float]:
     callable
         Gives the length in pixels of the path by way of a row of indices.
     """
-    end = len(lengths) - 1
+    start, end = 0, 1
 
     def target(chromosome: Any) -> float:
-        total, at = 0, 0
+        total, at = 0, start
         for to in [*chromosome, end]:
             length = lengths[at, int(to)]
             if length < 0:

@@ -130,7 +130,7 @@ class Graph(NamedTuple):
     block: int
     """Fields of the map, along a side, that are one block."""
     points: NDArray[np.int32]
-    """(n, 2) fields (x, y) of the map: the start, the keypoints, the target."""
+    """(n, 2) fields (x, y) of the map: the start, the target, the keypoints."""
     edges: NDArray[np.int32]
     """(m, 2) numbers of the points that a free line joins, the smaller one first."""
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from gapath.errors import require
 from gapath.grid import OBSTACLE, SCALE
 from gapath.kernels.raster import polyline
-from gapath.kernels.visibility_graph import graph_lengths, shortest
+from gapath.kernels.visibility_graph import END, START, graph_lengths, shortest
 from gapath.keypoints import Points, Vector, axis_ends, corners, label, place
 from gapath.obstacle_image import Clearance, Picture, dilate
 from gapath.problem import CornerCutting, Graph, Plan, PlanStatus, Query
@@ -26,7 +26,7 @@ class VisibilityGraph(NamedTuple):
     obstacles: Picture
     """The picture on which lines are drawn, grown by the robot's radius, (rows, cols)."""
     points: Points
-    """(n, 2) pixels (x, y) of that picture: the start, the keypoints, the end."""
+    """(n, 2) pixels (x, y) of that picture: the start, the end, the keypoints."""
     lengths: NDArray[np.int64]
     """(n, n) in units of 1 / SCALE pixels of the picture, or `BLOCKED`."""
     scale: int
@@ -53,8 +53,8 @@ class VisibilityGraph(NamedTuple):
         before, expansions = np.empty(n, dtype=np.int32), np.empty(1, dtype=np.int64)
         costs = np.empty(n, dtype=np.int64)
         length = shortest(self.lengths, self.points, informed, costs, before, expansions)
-        indices = [n - 1] if length >= 0 else []
-        while indices and indices[-1]:
+        indices = [END] if length >= 0 else []
+        while indices and indices[-1] != START:
             indices.append(int(before[indices[-1]]))
         return np.array(indices[::-1], dtype=np.int32), int(expansions[0])
 
@@ -95,7 +95,7 @@ class VisibilityGraph(NamedTuple):
         if self.scale == 1:
             return self.points
         points = self._representatives(self.points, problem)
-        points[0], points[-1] = problem.start, problem.target
+        points[START], points[END] = problem.start, problem.target
         return points
 
     def path(self, indices: NDArray[np.int32], problem: Query) -> Points:
@@ -219,7 +219,7 @@ class Surveyor(Clearance):
         grown, scale = self._grown(problem, stages)
         found, count = self._found(grown)
         ends = np.array([problem.start, problem.target], dtype=np.int32) // scale
-        points = np.concatenate((ends[:1], place(found, grown, self.push_out), ends[1:]))
+        points = np.concatenate((ends, place(found, grown, self.push_out)))
         stages.end("keypoints")
 
         lengths = np.empty((len(points), len(points)), dtype=np.int64)

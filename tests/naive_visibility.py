@@ -68,19 +68,19 @@ def graph_lengths(picture, points, rule="allow"):
 
 
 def shortest(lengths):
-    """Length of the shortest way from the first point to the last one; None if there is none."""
+    """Length of the shortest way from the first point to the second; None if there is none."""
     n = len(lengths)
     far = float("inf")
     way = [[far if length is None else length for length in row] for row in lengths]
     way[0][0] = 0
     for k, i, j in itertools.product(range(n), repeat=3):
         way[i][j] = min(way[i][j], way[i][k] + way[k][j])
-    return None if way[0][-1] == far else way[0][-1]
+    return None if way[0][1] == far else way[0][1]
 
 
 def path_length(lengths, chromosome, ends_are_genes):
     """Eqs (6) to (8): None where a restriction is broken."""
-    start, end = 0, len(lengths) - 1
+    start, end = 0, 1
     if not ends_are_genes:
         chromosome = [start, *chromosome, end]
     if chromosome[0] != start or end not in chromosome:
@@ -176,7 +176,7 @@ def evolve(lengths, planner, genes, penalty, words):
         length = path_length(lengths, chromosome, ends_are_genes)
         return (penalty if length is None else length), chromosome
 
-    drawn = points - 1 if version == "v64" else points  # up to 6.6.0 never the end at first
+    drawn = points - 1 if version == "v64" else points  # up to 6.6.0 never the last point at first
     population = [
         scored([naive.high(words.take(), drawn) for _ in range(genes)])
         for _ in range(planner.population)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath._jit import kernel
+from gapath.kernels.visibility_graph import END, START
 from gapath.rng import Stream, fill, happens, high, low
 from gapath.units import SCALE
 
@@ -29,15 +30,15 @@ SETTINGS = np.dtype(
         ("roulette_skips_elites", np.bool_),
         ("distinct_parents", np.bool_),
         ("middle_includes_end", np.bool_),
-        ("first_excludes_end", np.bool_),
+        ("first_excludes_last", np.bool_),
         ("first_best_is_last_drawn", np.bool_),
         ("offspring_can_save", np.bool_),
         ("penalty", np.int64),
     ]
 )
 """Settings of the genetic algorithm, as the kernel takes them: an array of one row. With
-`breeders` 0 every parent breeds with the probability of crossover; with `first_excludes_end` no
-individual of the first population has the end as a gene; `penalty` is the fitness where a
+`breeders` 0 every parent breeds with the probability of crossover; with `first_excludes_last` no
+individual of the first population has the last point as a gene; `penalty` is the fitness where a
 restriction is broken, in units of 1 / SCALE."""
 
 EPOCHS = np.dtype([("best", np.int64), ("sum", np.int64)])
@@ -89,8 +90,7 @@ def path_length(
     Parameters
     ----------
     lengths : (n, n) int64
-        Lengths of the free lines between points, negative where a line is not free; the first
-        point is the start, the last one the end.
+        Lengths of the free lines between points, negative where a line is not free.
     chromosome : (genes,) int32
         Indices of points.
     ends_are_genes : bool
@@ -101,20 +101,19 @@ def path_length(
     int
         The length in units of 1 / SCALE, or -1 if a restriction is broken.
     """
-    end = lengths.shape[0] - 1
-    if ends_are_genes and chromosome[0] != 0:
+    if ends_are_genes and chromosome[0] != START:
         return -1
-    at = 0
+    at = START
     total = np.int64(0)
     for to in chromosome:
         length = lengths[at, to]
         if length < 0:
             return -1
         total += length
-        if to == end:
+        if to == END:
             return total
         at = to
-    length = lengths[at, end]
+    length = lengths[at, END]
     if ends_are_genes or length < 0:
         return -1
     return total + length
@@ -163,7 +162,7 @@ def evolve(
     pairs = np.empty((size - parents) // 2, dtype=np.uint64)
     of_genes = np.empty(3 * genes, dtype=np.uint64)
 
-    drawn = points - 1 if setting["first_excludes_end"] else points
+    drawn = points - 1 if setting["first_excludes_last"] else points
     for i in range(size):
         fill(stream, of_genes[:genes])
         for gene in range(genes):

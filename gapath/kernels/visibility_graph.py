@@ -15,6 +15,9 @@ from gapath.units import OBSTACLE, SCALE
 BLOCKED = -1
 """The length of a line that meets an obstacle."""
 
+START, END = 0, 1
+"""Numbers of the two points that every graph has; keypoints follow."""
+
 
 @kernel
 def line_is_free(table: NDArray[np.int32], x0: int, y0: int, x1: int, y1: int, rule: int) -> bool:
@@ -96,7 +99,7 @@ def shortest(
     before: NDArray[np.int32],
     expansions: NDArray[np.int64],
 ) -> int:
-    """Find the shortest path from the first point to the last one.
+    """Find the shortest path from the start to the end.
 
     Parameters
     ----------
@@ -105,7 +108,7 @@ def shortest(
     points : (n, 2) int32
         Pixels (x, y).
     informed : bool
-        True for A*, by the straight line to the last point; False for Dijkstra.
+        True for A*, by the straight line to the end; False for Dijkstra.
     costs : (n,) int64
         Overwritten with the length of the way to each point; BLOCKED where none was found.
     before : (n,) int32
@@ -119,17 +122,16 @@ def shortest(
         The length in units of 1 / SCALE, or BLOCKED if there is no path.
     """
     n = points.shape[0]
-    end = n - 1
     estimates = np.zeros(n, dtype=np.int64)
     if informed:
         for i in range(n):
             estimates[i] = np.int64(
-                distance(points[i, 0], points[i, 1], points[end, 0], points[end, 1])
+                distance(points[i, 0], points[i, 1], points[END, 0], points[END, 1])
             )
     settled = np.zeros(n, dtype=np.bool_)
     costs[:] = BLOCKED
-    costs[0] = 0
-    before[0] = 0
+    costs[START] = 0
+    before[START] = START
     expansions[0] = 0
     while True:
         at = -1
@@ -138,8 +140,8 @@ def shortest(
                 continue
             if at < 0 or costs[i] + estimates[i] < costs[at] + estimates[at]:
                 at = i
-        if at < 0 or at == end:
-            return costs[end]
+        if at < 0 or at == END:
+            return costs[END]
         settled[at] = True
         expansions[0] += 1
         for i in range(n):

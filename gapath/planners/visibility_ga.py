@@ -19,6 +19,7 @@ from gapath.kernels.visibility_evolution import (
     path_length,
     run_evolution,
 )
+from gapath.kernels.visibility_graph import END, START
 from gapath.problem import Evolution, Plan, PlanStatus, Query
 from gapath.rng import Stream, probability_threshold
 from gapath.stages import Stages
@@ -125,7 +126,7 @@ class Planner(Surveyor):
         settings["roulette_skips_elites"] = not old
         settings["distinct_parents"] = not old
         settings["middle_includes_end"] = not old
-        settings["first_excludes_end"] = old  # so does OppOpPopInit, its library, before 2.0
+        settings["first_excludes_last"] = old  # so does OppOpPopInit, its library, before 2.0
         settings["first_best_is_last_drawn"] = old
         settings["offspring_can_save"] = old
         # f(P)max: the perimeter of the picture
@@ -194,7 +195,7 @@ class Planner(Surveyor):
             return Plan(PlanStatus.INFEASIBLE, survey=survey, stages=stages.seconds)
         result = run_evolution(graph.lengths, genes, self._settings(problem, graph.scale), stream)
         stages.end("genetic algorithm")
-        turns = _turns(result.chromosomes, len(graph.points), self._ends_are_genes)
+        turns = _turns(result.chromosomes, self._ends_are_genes)
         epochs = len(result.epochs)
         plan = Plan(
             PlanStatus.NOT_FOUND,
@@ -209,14 +210,14 @@ class Planner(Surveyor):
         return graph.answer(plan, turns[-1], problem)
 
 
-def _turns(chromosomes: NDArray[np.int32], points: int, ends_are_genes: bool) -> NDArray[np.int32]:
+def _turns(chromosomes: NDArray[np.int32], ends_are_genes: bool) -> NDArray[np.int32]:
     """Give the paths of chromosomes as indices of points, the end repeated up to their last."""
     indices = chromosomes
     if not ends_are_genes:
-        end = np.full((len(chromosomes), 1), points - 1, dtype=np.int32)
-        indices = np.concatenate((np.zeros_like(end), chromosomes, end), axis=1)
-    reached = np.logical_or.accumulate(indices == points - 1, axis=1)
-    return np.where(reached, np.int32(points - 1), indices)
+        column = np.ones((len(chromosomes), 1), dtype=np.int32)
+        indices = np.concatenate((START * column, chromosomes, END * column), axis=1)
+    reached = np.logical_or.accumulate(indices == END, axis=1)
+    return np.where(reached, np.int32(END), indices)
 
 
 def _evolution(

@@ -48,7 +48,7 @@ uint32 rows               # of the picture of obstacles, in blocks
 uint32 cols
 uint32 block              # fields of the map, along a side, that are one block
 uint8[] obstacles         # grown by the robot's radius: 8 blocks a byte, row by row, high bit first
-int32[] points            # x, y, x, y, ... [fields]: the start, the keypoints, the target
+int32[] points            # x, y, x, y, ... [fields]: the start, the target, the keypoints
 int32[] edges             # i, j, i, j, ...: points that a free line joins
 """,
     "gapath_msgs/msg/Result": """\

@@ -20,12 +20,12 @@ from gapath.rng import stream
 X = -1  # a line that is not free
 LENGTHS = np.array(
     [
-        # start, two keypoints, a keypoint in an obstacle, the end
-        [0, 5, 7, X, X],
-        [5, 0, 3, X, X],
-        [7, 3, 0, X, 4],
+        # start, end, two keypoints, a keypoint in an obstacle
+        [0, X, 5, 7, X],
+        [X, 0, X, 4, X],
+        [5, X, 0, 3, X],
+        [7, 4, 3, 0, X],
         [X, X, X, X, X],
-        [X, X, 4, X, 0],
     ],
     dtype=np.int64,
 )
@@ -34,19 +34,19 @@ LENGTHS = np.array(
 @pytest.mark.parametrize(
     ("chromosome", "length"),
     [
-        ([2], 7 + 4),
-        ([1, 2], 5 + 3 + 4),
-        ([1], -1),  # no free line from the first keypoint to the end
-        ([2, 4], 7 + 4),
-        ([2, 4, 3], 7 + 4),  # what follows the end does not count
-        ([2, 4, 1, 0], 7 + 4),
-        ([0, 0, 2], 7 + 4),  # standing still costs nothing
-        ([2, 2, 2], 7 + 4),
-        ([1, 0, 2], 5 + 5 + 7 + 4),  # back to the start is allowed
-        ([4], -1),  # the straight line is blocked
-        ([2, 3], -1),  # a keypoint in an obstacle
-        ([3, 3], -1),
-        ([2, 1], -1),
+        ([3], 7 + 4),
+        ([2, 3], 5 + 3 + 4),
+        ([2], -1),  # no free line from the first keypoint to the end
+        ([3, 1], 7 + 4),
+        ([3, 1, 4], 7 + 4),  # what follows the end does not count
+        ([3, 1, 2, 0], 7 + 4),
+        ([0, 0, 3], 7 + 4),  # standing still costs nothing
+        ([3, 3, 3], 7 + 4),
+        ([2, 0, 3], 5 + 5 + 7 + 4),  # back to the start is allowed
+        ([1], -1),  # the straight line is blocked
+        ([3, 4], -1),  # a keypoint in an obstacle
+        ([4, 4], -1),
+        ([3, 2], -1),
     ],
 )
 def test_lengths_of_turns_by_hand(chromosome, length):
@@ -56,17 +56,17 @@ def test_lengths_of_turns_by_hand(chromosome, length):
 @pytest.mark.parametrize(
     ("chromosome", "length"),
     [
-        ([0, 2, 4], 7 + 4),
-        ([0, 1, 2, 4], 12),
-        ([0, 2, 4, 3, 1], 7 + 4),  # eq. (6): the end comes early
-        ([0, 0, 2, 2, 4, 4], 7 + 4),
-        ([2, 4, 0], -1),  # eq. (8): it does not begin at the start
-        ([1, 0, 2, 4], -1),
-        ([0, 1, 2], -1),  # it never reaches the end
+        ([0, 3, 1], 7 + 4),
+        ([0, 2, 3, 1], 12),
+        ([0, 3, 1, 4, 2], 7 + 4),  # eq. (6): the end comes early
+        ([0, 0, 3, 3, 1, 1], 7 + 4),
+        ([3, 1, 0], -1),  # eq. (8): it does not begin at the start
+        ([2, 0, 3, 1], -1),
+        ([0, 2, 3], -1),  # it never reaches the end
         ([0, 0, 0], -1),
-        ([0, 1, 4], -1),  # a blocked line
-        ([0, 4], -1),
-        ([4, 4], -1),
+        ([0, 2, 1], -1),  # a blocked line
+        ([0, 1], -1),
+        ([1, 1], -1),
         ([0], -1),
     ],
 )
@@ -92,7 +92,7 @@ def test_lengths_equal_the_twin(seed, n, genes, ends_are_genes):
     lengths = random_lengths(random, n, 0.7)
     expected = [[None if v < 0 else v for v in row] for row in lengths.tolist()]
     for chromosome in random.integers(0, n, (50, genes)).astype(np.int32):
-        chromosome[random.random(genes) < 0.2] = n - 1
+        chromosome[random.random(genes) < 0.2] = 1
         if random.random() < 0.5:
             chromosome[0] = 0
         found = path_length(lengths, chromosome, ends_are_genes)
@@ -160,7 +160,8 @@ def test_generations_of_table_1_equal_the_naive_twin(profile, reading, genes):
     epochs = []
     for trial in range(6):
         lengths = random_lengths(np.random.default_rng(trial), 16, 0.99)
-        far = np.abs(np.subtract.outer(np.arange(16), np.arange(16))) > 6
+        place = np.array([0, 15, *range(1, 15)])  # along a line, the end farthest from the start
+        far = np.abs(np.subtract.outer(place, place)) > 8
         lengths[far] = -1
         epochs.append(same_as_twin(planner, lengths, genes, (7, trial)))
     assert max(epochs) > 30

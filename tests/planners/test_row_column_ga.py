@@ -17,7 +17,7 @@ from gapath.components import yaml_values
 from gapath.errors import InputError
 from gapath.grid import GridMap
 from gapath.kernels.row_column import MAX_SIDE, Genotype
-from gapath.mapio.drawn import DRAWINGS, Reader
+from gapath.mapio.drawn import SEARCH_SPACES, Reader
 from gapath.metrics import flaw
 from gapath.problem import CornerCutting, PlanStatus, Problem
 from gapath.row_column import express
@@ -54,7 +54,7 @@ def test_evolution_equals_the_naive_twin(problem, ga, seed, trial):
 
 
 @pytest.mark.parametrize("name", GENOTYPES)
-@pytest.mark.parametrize("drawing", DRAWINGS)
+@pytest.mark.parametrize("drawing", SEARCH_SPACES)
 def test_search_spaces_equal_the_naive_twin(name, drawing):
     values = yaml_values("planner", name) | {"max_epochs": 4}
     del values["kind"]
@@ -91,7 +91,7 @@ def test_it_goes_in_every_direction(start, target, name):
     assert flaw(problem, plan.path, plan.cost) is None
 
 
-@pytest.mark.parametrize("drawing", DRAWINGS)
+@pytest.mark.parametrize("drawing", SEARCH_SPACES)
 def test_each_genotype_keeps_to_what_it_can_be(drawing):
     grid = Reader(drawing).read()
     n = grid.cols

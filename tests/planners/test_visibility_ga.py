@@ -81,7 +81,7 @@ def same_as_twin(problem, planner, seed, trial):
 
 def turns(chromosome, lengths, ends_are_genes):
     """All points of a path, the end again and again once it is reached."""
-    end = len(lengths) - 1
+    end = 1
     row = chromosome if ends_are_genes else [0, *chromosome, end]
     reached = row.index(end) if end in row else len(row)
     return row[:reached] + [end] * (len(row) - reached)
