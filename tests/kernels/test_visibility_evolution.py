@@ -12,7 +12,7 @@ from visibility_strategies import ga
 
 from gapath.errors import InputError
 from gapath.grid import SCALE, GridMap
-from gapath.kernels.visibility_evolution import path_length, run_evolution
+from gapath.kernels.visibility_evolution import INDEX_BITS, path_length, run_evolution, select
 from gapath.planners.visibility_ga import PROFILES
 from gapath.problem import Problem
 from gapath.rng import stream
@@ -165,6 +165,26 @@ def test_generations_of_table_1_equal_the_naive_twin(profile, reading, genes):
         lengths[far] = -1
         epochs.append(same_as_twin(planner, lengths, genes, (7, trial)))
     assert max(epochs) > 30
+
+
+def test_a_place_on_the_wheel_is_as_wide_as_its_fitness_says():
+    """So many spins that some balls lie just at the border of two places."""
+    parents, pixels = 300_000, np.array([2, 0, 3, 3])
+    settings = ga(elite_portion=0.0)._settings(FLOOR, 1)
+    settings["parents"] = parents
+    scores = pixels * SCALE
+    keys = np.sort((scores << INDEX_BITS) + np.arange(4))
+    words, sums = np.empty(parents, dtype=np.uint64), np.empty(4, dtype=np.int64)
+    chosen = np.empty((parents, 1), dtype=np.int32)
+    chosen_scores = np.empty(parents, dtype=np.int64)
+    population = np.arange(4, dtype=np.int32).reshape(4, 1)
+    random = stream(0)
+    select(population, scores, keys, settings[0], random, words, sums, chosen, chosen_scores)
+    balls = words % np.uint64(8 * SCALE)
+    wheel = np.array([1, 1, 1, 1, 0, 0, 2, 3])  # 4, 2, 1 and 1 pixels, by rank
+    assert (chosen[:, 0] == wheel[balls // np.uint64(SCALE)]).all()
+    assert (chosen_scores == scores[chosen[:, 0]]).all()
+    assert set((balls[balls % np.uint64(SCALE) == 0] // np.uint64(SCALE)).tolist()) & {4, 6, 7}
 
 
 @pytest.mark.parametrize("profile", PROFILES)
