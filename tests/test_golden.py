@@ -10,6 +10,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from mcap.reader import make_reader
 
@@ -17,6 +18,7 @@ from gapath.api import load_map
 from gapath.components import build, yaml_values
 from gapath.config import Run
 from gapath.experiment import execute
+from gapath.grid import GridMap
 from gapath.mapio.reconstructed import CLASSES
 from gapath.plan_task import PlanTask
 from gapath.problem import Problem
@@ -34,10 +36,20 @@ S04 = [
     for planner in ("geisler", "hermanu", "sedighi")
     for drawing in ("s04_sp03", "s04_sp07")
 ]
+M22 = [
+    (scene, planner)
+    for planner in (
+        "visibility_ga",
+        "visibility_ga_resized",
+        "visibility_ga_corners",
+        "inflated_ga3",
+    )
+    for scene in ("m22_scene03", "m22_scene07")
+]
 
 
 def run(folder, map_name, planner, trials=2, **values):
-    grid = load_map(map_name)
+    grid = room() if map_name == "room" else load_map(map_name)
     settings = yaml_values("planner", planner) | values
     problem = Problem(grid, grid.start, grid.target)
     made = build("planner", settings, "planner")
@@ -58,6 +70,13 @@ def run(folder, map_name, planner, trials=2, **values):
         "test",
         progress=False,
     )
+
+
+def room():
+    """A small map with two discs in the way."""
+    y, x = np.mgrid[:40, :60]
+    discs = ((x - 18) ** 2 + (y - 15) ** 2 <= 16) | ((x - 42) ** 2 + (y - 26) ** 2 <= 16)
+    return GridMap("room", np.where(discs, 1.0, 0.5), (3, 20), (57, 21))
 
 
 def log_hash(path):
@@ -102,6 +121,12 @@ def test_s04_gives_the_golden_results(drawing, planner, tmp_path, update_golden)
     check(ours, "s04_table1", f"{drawing} {planner}", update_golden)
 
 
+@pytest.mark.parametrize(("scene", "planner"), M22)
+def test_m22_gives_the_golden_results(scene, planner, tmp_path, update_golden):
+    ours = results(tmp_path, scene, planner)
+    check(ours, "m22", f"{scene} {planner}", update_golden)
+
+
 def test_two_runs_give_the_same_log_byte_for_byte(tmp_path):
     logs = [
         (run(tmp_path / name, "kg18_test2", "ga2").folder / "run.mcap").read_bytes()
@@ -120,10 +145,22 @@ def test_a_trial_does_not_depend_on_how_many_others_run(tmp_path):
         )
 
 
+SMALL = {"population": 80, "max_epochs": 12}
+OTHER = {
+    "robot_radius": 2,
+    "keypoints": "corners",
+    "corner_tolerance": 0.5,
+    "ga2_profile": "v67",
+    "genes": 3,
+}
+
+
 def small(folder):
     return [
         results(folder / "kg18", "kg18_test2", "ga1", 1, max_epochs=20),
         results(folder / "s04", "s04_sp06", "sedighi", 1, max_epochs=20, population=30),
+        results(folder / "m22", "room", "visibility_ga", 2, **SMALL, robot_radius=1),
+        results(folder / "m22_small", "room", "visibility_ga_resized", 2, **SMALL, **OTHER),
     ]
 
 
