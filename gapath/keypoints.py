@@ -118,6 +118,24 @@ def corners(obstacles: Picture, tolerance: float) -> list[tuple[Vector, Vector]]
     return found
 
 
+def ahead(ends: list[tuple[Vector, Vector]], distance: float) -> list[tuple[Vector, Vector]]:
+    """Move points in their directions.
+
+    Parameters
+    ----------
+    ends : list of ((x, y), (dx, dy))
+        Points and directions, unit vectors.
+    distance : float
+        Pixels.
+
+    Returns
+    -------
+    list of ((x, y), (dx, dy))
+        The points, moved, and the same directions.
+    """
+    return [((x + distance * dx, y + distance * dy), (dx, dy)) for (x, y), (dx, dy) in ends]
+
+
 def _simplified(outline: NDArray[np.int64], tolerance: float) -> NDArray[np.int64]:
     """Leave out what lies within a tolerance of a closed polygon (Douglas and Peucker 1973)."""
     ring = np.concatenate((outline, outline[:1]))

@@ -10,7 +10,7 @@ from gapath.errors import require
 from gapath.grid import OBSTACLE, SCALE
 from gapath.kernels.raster import polyline
 from gapath.kernels.visibility_graph import END, START, graph_lengths, shortest
-from gapath.keypoints import Points, Vector, axis_ends, corners, label, place
+from gapath.keypoints import Points, Vector, ahead, axis_ends, corners, label, place
 from gapath.obstacle_image import Clearance, Picture, dilate
 from gapath.problem import CornerCutting, Graph, Plan, PlanStatus, Query
 from gapath.resizing import coarsest_scale, growth_at, shrunk
@@ -242,8 +242,10 @@ class Surveyor(Clearance):
     def _found(self, grown: Picture) -> tuple[list[tuple[Vector, Vector]], int]:
         """Find keypoints, as `place` takes them, and count obstacles."""
         labels, count = label(grown)
-        by_axes = self.keypoints == "axes"
-        found = axis_ends(labels) if by_axes else corners(grown, self.corner_tolerance)
+        if self.keypoints == "axes":
+            found = axis_ends(labels)
+        else:  # sides may cut into outlines: without this neighbours would not see each other
+            found = ahead(corners(grown, self.corner_tolerance), self.corner_tolerance + 1)
         require(
             len(found) + 2 <= MAX_POINTS,
             "map",

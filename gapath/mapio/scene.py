@@ -94,7 +94,9 @@ def _place(
 ) -> list[Obstacle]:
     """Draw obstacles that keep apart from one another, from the border and from the ends."""
     placed: list[Obstacle] = []
-    for _ in range(MAX_DRAWS * count):
+    in_vain = 0
+    while in_vain < MAX_DRAWS:
+        in_vain += 1
         one = _obstacle(dice, cols, rows, size)
         gap, clear = GAP * size // 100, CLEAR * size // 100
         reach = one.reach + gap // 2
@@ -106,6 +108,7 @@ def _place(
         free = all((one.x - x) ** 2 + (one.y - y) ** 2 >= (one.reach + clear) ** 2 for x, y in ends)
         if inside and apart and free:
             placed.append(one)
+            in_vain = 0
             if len(placed) == count:
                 return placed
     raise _crowded(count, cols, rows)
