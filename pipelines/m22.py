@@ -17,8 +17,9 @@ EXACT = {
     "visibility_ga": "visibility_dijkstra",
     "visibility_ga_unlimited": "visibility_dijkstra",
     "visibility_ga_corners": "visibility_dijkstra_corners",
+    "visibility_astar": "visibility_dijkstra",
 }
-"""Which planner knows the shortest path of a genetic algorithm's graph."""
+"""Which planner knows the shortest path of a planner's graph."""
 
 RIVALS = {
     "visibility_dijkstra": "Dijkstra on the graph",

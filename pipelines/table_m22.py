@@ -277,8 +277,9 @@ def _remarks(rows: pd.DataFrame) -> tuple[str, ...]:
     remarks += [
         "Here each pair of points is tested once, pixel by pixel along its line, before the search "
         "begins, which then only looks lengths up.",
-        "Resizing is part of the paper's further work: lengths are then those of a coarser "
-        "picture, so f may be a little above or below. The search for the scale works on the full "
+        "Resizing is part of the paper's further work: f is then that of a coarser picture, a "
+        "little above or below, and the path of fields, which goes from the middle of one block to "
+        "that of the next, is longer than its f says. The search for the scale works on the full "
         "picture and takes longer than it saves, unless a scale is kept for many plans.",
         "KG18's planner is what the paper's other further work asks for, a genetic algorithm over "
         "free (x, y) points: it minimises the sum of the weights of the fields, by which a "

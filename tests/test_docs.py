@@ -29,14 +29,16 @@ PAGES = [
     for page in sorted(ROOT.glob(pattern))
 ]
 PAPERS = (ROOT / "docs" / "papers.md").read_text("utf-8")
-KG18, S04 = PAPERS.split("\n## S04")
+KG18, rest = PAPERS.split("\n## S04")
+S04, M22 = rest.split("\n## M22")
 OF_PAPERS = pytest.mark.parametrize(
     ("page", "name", "assumed"),
     [
         (KG18, "bspline_ga", "### What is assumed"),
         (S04, "sedighi", "### What is assumed of S04"),
+        (M22, "visibility_ga", "### What is assumed of M22"),
     ],
-    ids=["kg18", "s04"],
+    ids=["kg18", "s04", "m22"],
 )
 
 each_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
