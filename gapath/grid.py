@@ -238,8 +238,16 @@ def nearest_free(obstacles: NDArray[np.bool_], place: Field) -> Field | None:
         The nearest by the Euclidean distance, of several the first from top and left; None if
         nothing is free.
     """
-    y, x = np.nonzero(~obstacles)
-    if not len(x):
-        return None
-    first = int(np.argmin((x - place[0]) ** 2 + (y - place[1]) ** 2))
-    return int(x[first]), int(y[first])
+    rows, cols = obstacles.shape
+    reach, found = 1, False
+    while True:
+        top, left = max(place[1] - reach, 0), max(place[0] - reach, 0)
+        window = obstacles[top : place[1] + reach + 1, left : place[0] + reach + 1]
+        if found:  # this window is twice as wide as one with a free field: none beyond is nearer
+            y, x = np.nonzero(~window)
+            first = int(np.argmin((x + left - place[0]) ** 2 + (y + top - place[1]) ** 2))
+            return int(x[first]) + left, int(y[first]) + top
+        found = not window.all()
+        if not found and reach > max(rows, cols):
+            return None
+        reach *= 2

@@ -61,13 +61,14 @@ def axis_ends(labels: NDArray[np.int32]) -> list[tuple[Vector, Vector]]:
 
     ends: list[tuple[Vector, Vector]] = []
     for region in measure.regionprops(labels):
-        pixels = region.coords.astype(np.int64)
-        y, x = pixels[:, 0], pixels[:, 1]
-        n, sx, sy = len(x), int(x.sum()), int(y.sum())
+        top, left, bottom, right = region.bbox
+        y, x = np.arange(top, bottom), np.arange(left, right)
+        rows, cols = region.image.sum(axis=1), region.image.sum(axis=0)
+        n, sx, sy = int(rows.sum()), int(cols @ x), int(rows @ y)
         # central moments times n squared, exactly
-        xx = n * int((x * x).sum()) - sx * sx
-        yy = n * int((y * y).sum()) - sy * sy
-        xy = n * int((x * y).sum()) - sx * sy
+        xx = n * int(cols @ (x * x)) - sx * sx
+        yy = n * int(rows @ (y * y)) - sy * sy
+        xy = n * int(np.einsum("ij,j->i", region.image, x) @ y) - sx * sy
         root = math.sqrt((xx - yy) ** 2 + 4 * xy * xy)
         # of a circle any axes would do: these are those of the picture
         along = (root + xx - yy, 2.0 * xy) if xx >= yy else (2.0 * xy, root + yy - xx)
@@ -89,7 +90,8 @@ def corners(obstacles: Picture, tolerance: float) -> list[tuple[Vector, Vector]]
     obstacles : (rows, cols) bool
         The picture.
     tolerance : float
-        Pixels by which the straight sides between corners may miss the obstacle's outline.
+        Pixels by which the straight sides between corners may miss the obstacle's outline; fewer
+        for one that is thinner than that.
 
     Returns
     -------
@@ -102,9 +104,10 @@ def corners(obstacles: Picture, tolerance: float) -> list[tuple[Vector, Vector]]
     framed = np.pad(obstacles, 1).astype(np.float64)
     for outline in measure.find_contours(framed, 0.5):
         twice = np.rint(2 * (outline[:-1, ::-1] - 1)).astype(np.int64)  # whole numbers, as (x, y)
-        kept = _simplified(twice, tolerance)
-        if len(kept) < 3:
-            continue
+        kept, finer = _simplified(twice, tolerance), tolerance
+        while len(kept) < 3:  # an obstacle thinner than the tolerance
+            finer /= 2
+            kept = _simplified(twice, finer)
         for before, at, after in zip(np.roll(kept, 1, 0), kept, np.roll(kept, -1, 0), strict=True):
             one, other = _unit(at - before), _unit(at - after)
             dx, dy = one[0] + other[0], one[1] + other[1]

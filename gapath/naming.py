@@ -9,8 +9,9 @@ import yaml
 
 from gapath.components import yaml_names, yaml_values
 
-_SHOWN_APART = ("path", "start", "target", "scenario", "problem")
-"""Settings of maps that are their name, or their ends, which tables have columns for."""
+_SHOWN_APART = ("path", "start", "target", "scenario", "problem", "map_class", "drawing", "number",
+                "instance")  # fmt: skip
+"""Settings of maps that are their name, or what tables have columns for."""
 
 
 def method_name(config: Mapping[str, Any], choices: Mapping[str, str]) -> str:
@@ -61,9 +62,14 @@ def map_name(name: str, settings: Mapping[str, Any]) -> str:
     path = str(settings.get("path") or "")
     title = _title(path) if Path(path).stem == name else name
     given = {key: value for key, value in settings.items() if key not in _SHOWN_APART}
-    kind = settings["kind"]  # classes of reconstructed maps have YAMLs, their kind has none
-    usual = yaml_values("map", kind) if kind in yaml_names("map") else given
-    return _with_changes(title, given, usual)
+    return _with_changes(title, given, _usual(settings["kind"]))
+
+
+def _usual(kind: str) -> dict[str, Any]:
+    """Give the values of a kind's YAML; of drawn maps, which have one each, those of any."""
+    names = yaml_names("map")
+    every = (yaml_values("map", name) for name in ([kind] if kind in names else names))
+    return next(values for values in every if values["kind"] == kind)
 
 
 def _title(path: str) -> str:

@@ -31,12 +31,12 @@ class Clearance:
     robot_radius : float
         r_m of eq. (1).
     radius_unit : str
-        "pixels", or "metres" on maps that have a resolution.
+        "pixels", or "metres", on a map with a resolution; on another a pixel counts as one metre.
     radius_tolerance : float
         The tolerance of eq. (1) as a part of r_m.
     element : str
         The square of the dilation: "reach" grows obstacles by r_d to all sides; "width" takes a
-        square r_d wide, which grows them by half of that.
+        square r_d wide (made odd), which grows them by half of that, rounded down.
     threshold : str or float
         Fields that weigh at least so much are obstacles; "otsu" sets this by Otsu's method where
         the free fields do not all weigh the same (start and target apart).

@@ -153,10 +153,10 @@ def _effort(row: PlanRow) -> dict[str, object]:
     """Tell what applies: a genetic algorithm has epochs, a graph search has expansions."""
     if row.status == "infeasible":
         return {"reason": _no_path(row)}
-    lines: dict[str, object] = {
-        "cost" if row.feasible else "best cost": f"{row.cost:g}",
-        "optimal cost": f"{row.optimal_cost:g}",
-    }
+    lines: dict[str, object] = {}
+    if not math.isinf(row.cost):  # a search that counts no obstacles has no cost without a path
+        lines["cost" if row.feasible else "best cost"] = f"{row.cost:g}"
+    lines["optimal cost"] = f"{row.optimal_cost:g}"
     if not math.isnan(row.line_length):
         lines["length"] = f"{row.line_length:.1f} fields in straight lines"
     if row.epochs:
@@ -169,7 +169,10 @@ def _effort(row: PlanRow) -> dict[str, object]:
 def _no_path(row: PlanRow) -> str:
     if math.isinf(row.optimal_cost):
         return "no path exists: the target cannot be reached from the start"
-    return "no path in the planner's graph; the map has one for a robot that is a point"
+    return (
+        "no path for the planner's robot and keypoints, one for a robot that is a point: try a "
+        "smaller planner.robot_radius, or planner.keypoints=corners"
+    )
 
 
 def _median_time(rows: list[PlanRow]) -> str:

@@ -162,7 +162,8 @@ class Plan:
     trace : callable, optional
         Computes the history of a genetic algorithm; called only if somebody wants it.
     lines : callable, optional
-        Gives the way points (n, 2) that straight lines join, if the path is made of such lines.
+        Gives the way points (n, 2) that straight lines join, if the path is made of such lines;
+        one found on a smaller picture may not be.
     survey : callable, optional
         Gives what the planner made of the map before it searched; the same for every stream.
     stages : mapping of str to float

@@ -2,8 +2,9 @@
 
 A picture is made smaller by a whole number: a pixel of the small one is an obstacle if any of
 its pixels was, so no obstacle vanishes. What may be lost are gaps. The scale is the coarsest one
-at which none is that the robot fits through: grown obstacles neither merge with one another or
-with the border, nor cut the free floor in two, where they did not before.
+at which none is that the robot fits through, up to that at which its radius is one pixel: grown
+obstacles neither merge with one another or with the border, nor cut the free floor in two, where
+they did not before.
 """
 
 import numpy as np
@@ -40,13 +41,17 @@ def growth_at(scale: int, growth: int) -> int:
     return -(-growth // scale)
 
 
-def coarsest_scale(obstacles: Picture, growth: int, ends: tuple[Field, Field]) -> int:
+def coarsest_scale(
+    obstacles: Picture, grown: Picture, growth: int, ends: tuple[Field, Field]
+) -> int:
     """Find the coarsest scale at which nothing is lost.
 
     Parameters
     ----------
     obstacles : (rows, cols) bool
         The picture, not grown.
+    grown : (rows, cols) bool
+        The picture, grown.
     growth : int
         Pixels by which obstacles grow: the robot's radius; also the coarsest scale tried.
     ends : two of (x, y)
@@ -57,9 +62,8 @@ def coarsest_scale(obstacles: Picture, growth: int, ends: tuple[Field, Field]) -
     int
         Pixels a side that can become one; 1 if none can.
     """
-    fine = dilate(obstacles, growth)
-    count = _framed_count(fine)
-    floor = label_free(fine)
+    count = _framed_count(grown)
+    floor = label_free(grown)
     for scale in range(growth, 1, -1):
         coarse = dilate(shrunk(obstacles, scale), growth_at(scale, growth))
         if any(coarse[y // scale, x // scale] for x, y in ends):
@@ -84,9 +88,7 @@ def label_free(obstacles: Picture) -> NDArray[np.int32]:
 
 def _keeps_floors(floor: NDArray[np.int32], coarse: Picture, scale: int) -> bool:
     """Tell whether no part of the free floor was cut in two."""
-    parts = label_free(coarse)
-    found = [
-        floor[y * scale, x * scale]
-        for y, x in (np.argwhere(parts == number)[0] for number in range(1, parts.max() + 1))
-    ]
-    return len(set(found)) == len(found)
+    parts, first = np.unique(label_free(coarse), return_index=True)
+    y, x = np.unravel_index(first[parts > 0], coarse.shape)
+    found = floor[y * scale, x * scale]
+    return len(np.unique(found)) == len(found)

@@ -1,6 +1,7 @@
 """From a map to a visibility graph (M22 Secs II.A to II.C): dilation, keypoints, free lines."""
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 from gapath.errors import require
 from gapath.grid import OBSTACLE, SCALE
 from gapath.kernels.raster import polyline
-from gapath.kernels.visibility_graph import END, START, graph_lengths, shortest
+from gapath.kernels.visibility_graph import END, START, graph_lengths, line_is_free, shortest
 from gapath.keypoints import Points, Vector, ahead, axis_ends, corners, label, place
 from gapath.obstacle_image import Clearance, Picture, dilate
 from gapath.problem import CornerCutting, Graph, Plan, PlanStatus, Query
@@ -18,6 +19,9 @@ from gapath.stages import Stages
 
 MAX_POINTS = 4096
 """Points of the largest graph: its lengths then take 128 MiB."""
+
+MAX_OUTLINE = 1 << 17
+"""Sides of pixels between obstacles and floor, at most: all outlines together."""
 
 
 class VisibilityGraph(NamedTuple):
@@ -32,6 +36,8 @@ class VisibilityGraph(NamedTuple):
     scale: int
     """Pixels of the map, along a side, that are one of the picture."""
     obstacle_count: int
+    full: Picture
+    """The grown obstacles at full size, (rows, cols) of the map."""
     """Number of obstacles."""
 
     def shortest(self, informed: bool) -> tuple[NDArray[np.int32], int]:
@@ -80,14 +86,15 @@ class VisibilityGraph(NamedTuple):
         Plan
             FOUND.
         """
-        path = self.path(indices, problem)
+        straight = self.straight(indices, problem)
+        path = polyline(straight) if straight is not None else self.through(indices, problem)
         cost = int(problem.map.table[path[:, 1], path[:, 0]].sum(dtype=np.int64)) / SCALE
         return replace(
             plan,
             status=PlanStatus.FOUND,
             path=path,
             cost=cost,
-            lines=lambda: self.on_map(problem)[indices],
+            lines=None if straight is None else lambda: straight,
         )
 
     def on_map(self, problem: Query) -> Points:
@@ -98,8 +105,32 @@ class VisibilityGraph(NamedTuple):
         points[START], points[END] = problem.start, problem.target
         return points
 
-    def path(self, indices: NDArray[np.int32], problem: Query) -> Points:
-        """Give the fields of a path on the map.
+    def straight(self, indices: NDArray[np.int32], problem: Query) -> Points | None:
+        """Give the points of a path on the map, if the straight lines between them are free.
+
+        They always are unless the picture was made smaller: a line of the small picture is only
+        nearly one of the map, and may graze what that one misses.
+
+        Parameters
+        ----------
+        indices, problem
+            As of `answer`.
+
+        Returns
+        -------
+        (m, 2) int32 or None
+            Pixels (x, y) of the map.
+        """
+        points, rule = self.on_map(problem)[indices], int(problem.corner_cutting)
+        if self.scale > 1:
+            table = np.where(self.full, np.int32(OBSTACLE), np.int32(0))
+            for (x0, y0), (x1, y1) in pairwise(points.tolist()):
+                if not line_is_free(table, x0, y0, x1, y1, rule):
+                    return None
+        return points
+
+    def through(self, indices: NDArray[np.int32], problem: Query) -> Points:
+        """Give the fields of a path on the map that keeps to the blocks of the small picture.
 
         Parameters
         ----------
@@ -114,8 +145,6 @@ class VisibilityGraph(NamedTuple):
             Fields (x, y) from start to target, each a neighbour of the one before.
         """
         fields = polyline(self.points[indices])
-        if self.scale == 1:
-            return fields
         # From block to block, straight to the next one's representative or over the corner that
         # both share: any other line could enter a third block.
         step = np.diff(fields, axis=0)
@@ -189,11 +218,11 @@ class Surveyor(Clearance):
         InputError
             As of `gapath.obstacle_image.Clearance.check` and `survey`.
         """
-        super().check(problem)
-        self.obstacle_count(problem)
+        self.count_obstacles(problem)
 
-    def obstacle_count(self, problem: Query) -> int:
-        """Count the obstacles of the graph of a problem; raises InputError as `survey` does."""
+    def count_obstacles(self, problem: Query) -> int:
+        """Count the obstacles of the graph of a problem; raises InputError as `check` does."""
+        super().check(problem)
         return self._found(self._grown(problem, Stages())[0])[1]
 
     def survey(self, problem: Query, stages: Stages) -> VisibilityGraph:
@@ -216,7 +245,7 @@ class Surveyor(Clearance):
         InputError
             If there are too many keypoints.
         """
-        grown, scale = self._grown(problem, stages)
+        grown, scale, full = self._grown(problem, stages)
         found, count = self._found(grown)
         ends = np.array([problem.start, problem.target], dtype=np.int32) // scale
         points = np.concatenate((ends, place(found, grown, self.push_out)))
@@ -226,31 +255,40 @@ class Surveyor(Clearance):
         table = np.where(grown, np.int32(OBSTACLE), np.int32(0))
         graph_lengths(table, points, int(problem.corner_cutting), lengths)
         stages.end("graph")
-        return VisibilityGraph(grown, points, lengths, scale, count)
+        return VisibilityGraph(grown, points, lengths, scale, count, full)
 
-    def _grown(self, problem: Query, stages: Stages) -> tuple[Picture, int]:
-        """Give the picture on which lines are drawn, and its scale."""
-        obstacles, growth, scale = self.obstacles(problem), self.growth(problem), 1
-        if self.resize:
-            scale = coarsest_scale(obstacles, growth, (problem.start, problem.target))
-            obstacles, growth = shrunk(obstacles, scale), growth_at(scale, growth)
-            stages.end("resizing")
-        grown = dilate(obstacles, growth)
+    def _grown(self, problem: Query, stages: Stages) -> tuple[Picture, int, Picture]:
+        """Give the picture on which lines are drawn, its scale, and the one at full size."""
+        obstacles, growth = self.obstacles(problem), self.growth(problem)
+        if not self.resize:
+            grown = dilate(obstacles, growth)
+            stages.end("dilation")
+            return grown, 1, grown
+        full = dilate(obstacles, growth)
+        scale = coarsest_scale(obstacles, full, growth, (problem.start, problem.target))
+        stages.end("resizing")
+        grown = dilate(shrunk(obstacles, scale), growth_at(scale, growth))
         stages.end("dilation")
-        return grown, scale
+        return grown, scale, full
 
     def _found(self, grown: Picture) -> tuple[list[tuple[Vector, Vector]], int]:
         """Find keypoints, as `place` takes them, and count obstacles."""
         labels, count = label(grown)
-        if self.keypoints == "axes":
-            found = axis_ends(labels)
-        else:  # sides may cut into outlines: without this neighbours would not see each other
-            found = ahead(corners(grown, self.corner_tolerance), self.corner_tolerance + 1)
-        require(
-            len(found) + 2 <= MAX_POINTS,
-            "map",
-            f"{len(found)} keypoints",
+        expected = (
             f"at most {MAX_POINTS - 2}: a larger planner.corner_tolerance or robot_radius, or a"
-            " smaller map",
+            " smaller map"
         )
+        if self.keypoints == "axes":
+            require(4 * count + 2 <= MAX_POINTS, "map", f"{4 * count} keypoints", expected)
+            return axis_ends(labels), count
+        sides = int(np.diff(grown, axis=0).sum() + np.diff(grown, axis=1).sum())
+        require(
+            sides <= MAX_OUTLINE,
+            "map",
+            f"{sides} sides of pixels between obstacles and floor",
+            f"at most {MAX_OUTLINE}: a larger planner.robot_radius, or a smaller map",
+        )
+        # Sides may cut into outlines: if it were not ahead, no corner would see its neighbours.
+        found = ahead(corners(grown, self.corner_tolerance), self.corner_tolerance + 1)
+        require(len(found) + 2 <= MAX_POINTS, "map", f"{len(found)} keypoints", expected)
         return found, count

@@ -1,5 +1,6 @@
 """From run folders to two tidy frames: a row for each planning query, a row for each drive."""
 
+import json
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import fields
@@ -144,4 +145,15 @@ def _trials(run: Run) -> pd.DataFrame:
         if field.type in _CHECKS:
             fits, what = _CHECKS[field.type]
             require(fits(trials[field.name]), f"{path.name}, {field.name}", "another type", what)
+    if "stage_times_s" in trials:
+        _check_stages(path, trials["stage_times_s"])
     return trials.assign(key=run.folder.name)
+
+
+def _check_stages(path: Path, texts: pd.Series) -> None:
+    try:
+        stages = [json.loads(text) for text in texts.unique()]
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{path.name}, stage_times_s", "no JSON", "stages and seconds") from error
+    good = all(isinstance(each, dict) for each in stages)
+    require(good, f"{path.name}, stage_times_s", "no mapping", "stages and seconds")

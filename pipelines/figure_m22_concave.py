@@ -52,9 +52,8 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
         title="M22: a concave obstacle",
         text=(
             "The paper names concave obstacles as a weakness of its keypoints: the ends of the "
-            "main axes of a U lie where they help nobody out of it, and the graph does not join "
-            "start and end. With the outward corners of obstacles as keypoints "
-            "(planner.keypoints=corners) it does.",
+            "main axes of a U lie where they help nobody out of it. Outward corners of obstacles "
+            "as keypoints (planner.keypoints=corners) lead around it.",
         ),
         tables=(_table(trials),),
         figures=(_figure(graphs),) if graphs else (),
@@ -111,8 +110,8 @@ def _figure(graphs: dict[str, First]) -> Figure:
         svg, png = render(canvas)
     return Figure(
         "m22_concave",
-        "Keypoints and free lines around a U, obstacles grown (orange): left the ends of its main "
-        "axes, right its outward corners with the first path found (yellow).",
+        "Keypoints and free lines around a U, obstacles grown (orange), with the first path found "
+        "(yellow), if any: M22's keypoints are ends of main axes, corners those of the outline.",
         " ".join(sentences),
         svg,
         png,

@@ -86,8 +86,8 @@ def _figure(curves: Curves) -> Figure:
     return Figure(
         "m22_convergence",
         "Best f by generation, a line a scene (reconstructed): median over the trials that found "
-        "a path; one that has ended keeps its last value. 2800, the picture's perimeter, is what "
-        "a chromosome without a free path counts.",
+        "a path; one that has ended keeps its last value. A chromosome without a free path counts "
+        "as long as the picture's perimeter.",
         "Falling curves, one a scene. " + " ".join(sentences),
         svg,
         png,

@@ -82,7 +82,8 @@ def _figure(found: dict[str, dict[str, First]], look: dict[str, Look]) -> Figure
                 color, dashes = _BRIGHT[drawn.index(planner)], look[planner].dashes
                 width = 2.6 if planner == drawn[0] else 1.1  # equal paths lie on one another
                 panel.plot(*points.T, color=color, linestyle=dashes, linewidth=width)
-                sentences.append(f"{label(name)}, {label(planner)}: {len(points) - 1} lines.")
+                kind = "lines" if len(by_planner[planner].best) else "steps"
+                sentences.append(f"{label(name)}, {label(planner)}: {len(points) - 1} {kind}.")
         handles = [
             Line2D([], [], color=_BRIGHT[i], linestyle=look[planner].dashes, label=label(planner))
             for i, planner in enumerate(drawn)
@@ -95,8 +96,8 @@ def _figure(found: dict[str, dict[str, First]], look: dict[str, Look]) -> Figure
         svg, png = render(canvas)
     return Figure(
         "m22_paths",
-        "The first path that each planner found, on reconstructed scenes: M22 with its limit of "
-        "20 generations and without, the shortest path over corners, and KG18's GA 3, whose way "
+        "The first path that each planner found, on the first of the reconstructed scenes: M22 "
+        "with its limit of 20 generations and without, the shortest path over corners, and KG18's GA 3, whose way "
         "points lie anywhere. Orange: what the obstacles grew by.",
         f"{len(found)} scenes with paths. " + " ".join(sentences),
         svg,

@@ -3,6 +3,7 @@
 M22: Martínez Santa, Martínez Sarmiento, Montiel Ariza 2022.
 """
 
+import math
 from typing import NamedTuple
 
 MAPS = tuple(f"m22_scene{number:02d}" for number in range(1, 11))
@@ -44,9 +45,9 @@ LABELS = {
 class Printed(NamedTuple):
     """What the paper says of a method (Sec. III)."""
 
-    length: float | None
-    """f, in pixels of a picture whose size it does not give."""
-    generations: float | None
+    length: float
+    """f, in pixels of a picture whose size it does not give; NaN where it gives none."""
+    generations: float
     seconds: float
     """Of the search, image work included in its fitness."""
 
@@ -54,7 +55,7 @@ class Printed(NamedTuple):
 PAPER = {
     "visibility_ga": Printed(1115.0, 51.5, 81.3),
     "visibility_ga_unlimited": Printed(1027.7, 829, 1293.0),
-    "visibility_astar": Printed(None, None, 83.0),
+    "visibility_astar": Printed(math.nan, math.nan, 83.0),
 }
 """Means of ten environments with a limit of 20 generations and for A*; a single run without."""
 

@@ -24,7 +24,8 @@ class First:
     graph : Graph or None
         What the planner made of the map.
     way_points : (n, 2) int32
-        Of the first path found, each once; empty if no trial found one.
+        Of the first path found, each once, for a search all its fields; empty if no trial found
+        one.
     best : (E,) float64
         f by generation of that trial.
     """

@@ -2,7 +2,7 @@
 
 import pytest
 
-from gapath.components import yaml_values
+from gapath.components import build, yaml_values
 from gapath.naming import map_name, method_name
 
 
@@ -27,6 +27,22 @@ def test_maps_that_differ_are_called_otherwise(name, values, expected):
     kind = values["kind"]
     usual = {} if kind == "reconstructed" else yaml_values("map", kind)
     assert map_name(name, usual | values) == expected
+
+
+@pytest.mark.parametrize(
+    ("yaml", "values", "expected"),
+    [
+        ("m22_scene03", {}, "m22_scene03"),
+        ("m22_scene03", {"obstacles": 20}, "m22_scene03[obstacles=20]"),
+        ("m22_scene03", {"number": 15, "width": 400}, "m22_scene15[width=400]"),
+        ("kg18_test3", {"instance": 5}, "kg18_test3"),  # tables have a column for it
+        ("s04_sp07", {}, "s04_sp07"),
+    ],
+)
+def test_drawn_maps_that_differ_are_called_otherwise(yaml, values, expected):
+    settings = yaml_values("map", yaml) | values
+    grid = build("map", settings, "map").read()
+    assert map_name(grid.name, settings) == expected
 
 
 def test_what_is_known_beforehand_is_named_by_its_folder():

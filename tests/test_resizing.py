@@ -76,7 +76,7 @@ def pictures_with_ends(draw):
 @given(pictures_with_ends())
 def test_the_scale_is_the_coarsest_that_loses_nothing(case):
     picture, growth, ends = case
-    scale = coarsest_scale(picture, growth, ends)
+    scale = coarsest_scale(picture, dilate(picture, growth), growth, ends)
     good = [s for s in range(2, growth + 1) if loses_nothing(picture, growth, s, ends)]
     assert scale == max(good, default=1)
     assert type(scale) is int
@@ -87,7 +87,7 @@ def test_the_scale_is_the_coarsest_that_loses_nothing(case):
 def test_where_the_robot_could_go_it_still_can(case):
     picture, growth, (start, target) = case
     fine, _ = parts_of_floor(dilate(picture, growth))
-    scale = coarsest_scale(picture, growth, (start, target))
+    scale = coarsest_scale(picture, dilate(picture, growth), growth, (start, target))
     coarse = dilate(shrunk(picture, scale), growth_at(scale, growth))
     covered = np.kron(coarse, np.ones((scale, scale)))[: fine.shape[0], : fine.shape[1]] > 0
     assert (covered | (fine > 0)).all()  # what was an obstacle still is
@@ -118,7 +118,7 @@ def test_a_gap_as_wide_as_the_robot_is_not_closed(growth, top):
     for wide, status in ((width, PlanStatus.FOUND), (width - 1, PlanStatus.INFEASIBLE)):
         picture = wall_with_gap(top, wide)
         assert dilate(picture, growth)[:, 20].all() == (wide < width)
-        scale = coarsest_scale(picture, growth, ends)
+        scale = coarsest_scale(picture, dilate(picture, growth), growth, ends)
         coarse = dilate(shrunk(picture, scale), growth_at(scale, growth))
         assert coarse[:, 20 // scale].all() == (wide < width)
         assert gapath.plan(map_of(picture), *ends, planner).status is status
@@ -130,7 +130,7 @@ def test_floors_that_touch_at_a_corner_are_two():
     picture[:17, 18:20] = picture[25:, 28:30] = True
     ends = (3, 20), (50, 20)
     assert parts_of_floor(dilate(picture, 4))[1] == 2
-    scale = coarsest_scale(picture, 4, ends)
+    scale = coarsest_scale(picture, dilate(picture, 4), 4, ends)
     assert scale == max(s for s in range(2, 5) if loses_nothing(picture, 4, s, ends)) > 1
 
 
@@ -138,14 +138,14 @@ def test_where_nothing_works_it_stays_as_it_is():
     free = np.zeros((20, 20), dtype=np.bool_)
     ends = (0, 0), (19, 19)
     for growth in (0, 1):
-        assert coarsest_scale(free, growth, ends) == 1
-    assert coarsest_scale(free, 6, ends) == 6
+        assert coarsest_scale(free, dilate(free, growth), growth, ends) == 1
+    assert coarsest_scale(free, dilate(free, 6), 6, ends) == 6
     tight = wall_with_gap(21, 7)  # a corridor of one pixel between blocks of any size
-    assert coarsest_scale(tight, 3, ((0, 0), (39, 59))) == 1
+    assert coarsest_scale(tight, dilate(tight, 3), 3, ((0, 0), (39, 59))) == 1
 
 
 def test_scenes_become_smaller():
     for number in range(1, 11):
         grid = load_map(f"m22_scene{number:02d}")
         ends = grid.start, grid.target
-        assert 2 <= coarsest_scale(grid.obstacles, 6, ends) <= 6
+        assert 2 <= coarsest_scale(grid.obstacles, dilate(grid.obstacles, 6), 6, ends) <= 6

@@ -10,12 +10,15 @@ from strategies import RULES
 from visibility_strategies import CLEARANCE, GRAPH, map_of, picture_problems
 
 import gapath
+from gapath.components import build, yaml_values
 from gapath.errors import InputError
 from gapath.grid import SCALE, GridMap
 from gapath.kernels.visibility_graph import BLOCKED
 from gapath.keypoints import axis_ends, label
+from gapath.mapio import scene
 from gapath.metrics import line_length
-from gapath.problem import CornerCutting, Problem
+from gapath.problem import CornerCutting, PlanStatus, Problem
+from gapath.rng import stream
 from gapath.stages import Stages
 from gapath.visibility_graph import MAX_POINTS, Surveyor
 
@@ -63,8 +66,7 @@ def test_corners_are_keypoints_too():
     indices, _ = graph.shortest(informed=True)
     lines = graph.on_map(one_block())[indices]
     assert len(lines) == 4
-    path = naive.polyline([tuple(point) for point in lines.tolist()])
-    assert graph.path(indices, one_block()).tolist() == [list(field) for field in path]
+    assert (graph.straight(indices, one_block()) == lines).all()
 
 
 def test_without_push_out_no_line_reaches_a_keypoint_within():
@@ -171,7 +173,7 @@ def test_a_path_of_blocks_keeps_to_them():
         if rule is CornerCutting.NO_DIAGONALS:
             assert not len(indices)
             continue
-        path = graph.path(indices, problem)
+        path = graph.through(indices, problem)
         blocks = {tuple(p) for p in (path // graph.scale).tolist()}
         lines = [tuple(p) for p in graph.points[indices].tolist()]
         assert blocks == set(naive.polyline(lines))
@@ -214,3 +216,40 @@ def test_settings_out_of_range_are_refused(field, value, expected):
     with pytest.raises(InputError) as caught:
         surveyor(**{field: value})
     assert str(caught.value) == f"planner.{field}: got {value}, expected {expected}"
+
+
+def test_outlines_that_are_too_long_are_refused_before_they_are_followed():
+    picture = np.zeros((400, 400), dtype=np.bool_)
+    picture[::2, ::2] = True
+    with pytest.raises(InputError, match=r"^map: got 1\d+ sides of pixels between obstacles and"):
+        survey(Problem(map_of(picture), (1, 1), (399, 399)), robot_radius=0, keypoints="corners")
+
+
+def test_what_a_robot_comes_to_know_on_its_way_is_no_bad_input():
+    """`check` has seen another map; the navigator's next planner is asked."""
+    picture = np.zeros((130, 130), dtype=np.bool_)
+    picture[1::3, 1::3] = True
+    problem = Problem(map_of(picture), (0, 0), (129, 129))
+    for name in ("visibility_ga", "visibility_dijkstra"):
+        planner = build("planner", yaml_values("planner", name) | {"robot_radius": 0}, "planner")
+        with pytest.raises(InputError):
+            planner.check(problem)
+        assert planner.plan(problem, stream(0)).status is PlanStatus.NOT_FOUND
+
+
+def test_lines_of_a_small_picture_that_graze_an_obstacle_of_the_map_are_no_lines():
+    """Both kinds of path keep their distance; only the straight one has lines."""
+    kinds = set()
+    for number in range(1, 6):
+        grid = scene.draw(number, 6, 800, 600)
+        problem = Problem(grid, grid.start, grid.target)
+        graph = survey(problem, resize=True)
+        indices, _ = graph.shortest(informed=True)
+        straight = graph.straight(indices, problem)
+        kinds.add(straight is None)
+        if straight is not None:
+            fields = np.array(naive.polyline([tuple(p) for p in straight.tolist()]))
+            assert not graph.full[fields[:, 1], fields[:, 0]].any()
+        through = graph.through(indices, problem)
+        assert not graph.full[through[:, 1], through[:, 0]].any()
+    assert False in kinds

@@ -142,7 +142,7 @@ def test_a_robot_that_does_not_fit_is_one_clear_error(
         (["map.path=dots.png", "planner.robot_radius=0"], "map: got 6480 keypoints, expected at"),
         (
             ["map.path=room.png", "planner.genes=1000", "planner.max_epochs=1000000"],
-            "planner.max_epochs: got 1000000 with 1000 genes: 11.2 GiB",
+            "planner.max_epochs: got 1000000 with 1000 genes: 18.7 GiB",
         ),
     ],
 )

@@ -146,7 +146,9 @@ def _picture(obstacles: list[Obstacle], cols: int, rows: int) -> NDArray[np.bool
 
 def _crowded(obstacles: int, cols: int, rows: int) -> InputError:
     return InputError(
-        "map.obstacles", obstacles, f"as many as fit on {cols} x {rows} pixels, e.g. 6"
+        "map.obstacles",
+        obstacles,
+        f"as many as fit on {cols} x {rows} pixels, between start and end",
     )
 
 

@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.errors import require
+from gapath.errors import InputError, require
 from gapath.grid import SCALE
 from gapath.kernels.visibility_evolution import (
     SETTINGS,
@@ -141,7 +141,7 @@ class Planner(Surveyor):
         genes = self.genes
         if isinstance(genes, str):
             genes = max(1, obstacle_count) + (2 if self._ends_are_genes else 0)
-        needed = 4 * genes * (2 * self.population + 3 * self.max_epochs) + 32 * self.max_epochs
+        needed = 4 * genes * (2 * self.population + 5 * self.max_epochs) + 32 * self.max_epochs
         require(
             needed <= MAX_BYTES,
             "planner.max_epochs",
@@ -163,8 +163,7 @@ class Planner(Surveyor):
         InputError
             If the robot does not fit at an end, or the map has too many keypoints or obstacles.
         """
-        super().check(problem)
-        self._genes(self.obstacle_count(problem))
+        self._genes(self.count_obstacles(problem))
 
     def plan(self, problem: Query, stream: Stream) -> Plan:
         """Make the graph and run the genetic algorithm once.
@@ -179,17 +178,15 @@ class Planner(Surveyor):
         Returns
         -------
         Plan
-            FOUND with the best path, or NOT_FOUND; INFEASIBLE if no path of the graph joins
-            start and end.
-
-        Raises
-        ------
-        InputError
-            If the map has too many obstacles for the settings.
+            FOUND with the best path, or NOT_FOUND, also for what `check` refuses and a robot
+            has come to know only now; INFEASIBLE if no path of the graph joins start and end.
         """
         stages = Stages()
-        graph = self.survey(problem, stages)
-        genes = self._genes(graph.obstacle_count)
+        try:
+            graph = self.survey(problem, stages)
+            genes = self._genes(graph.obstacle_count)
+        except InputError:
+            return Plan(PlanStatus.NOT_FOUND, stages=stages.seconds)
         survey = partial(graph.drawn, problem)
         if not len(graph.shortest(informed=False)[0]):
             return Plan(PlanStatus.INFEASIBLE, survey=survey, stages=stages.seconds)

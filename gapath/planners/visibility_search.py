@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from functools import partial
 
+from gapath.errors import InputError
 from gapath.problem import Plan, PlanStatus, Query
 from gapath.rng import Stream
 from gapath.stages import Stages
@@ -38,10 +39,14 @@ class Planner(Surveyor):
         Returns
         -------
         Plan
-            FOUND, or INFEASIBLE if no path of the graph joins start and end.
+            FOUND, or INFEASIBLE if no path of the graph joins start and end; NOT_FOUND for what
+            `check` refuses and a robot has come to know only now.
         """
         stages = Stages()
-        graph = self.survey(problem, stages)
+        try:
+            graph = self.survey(problem, stages)
+        except InputError:
+            return Plan(PlanStatus.NOT_FOUND, stages=stages.seconds)
         indices, expansions = graph.shortest(self.informed)
         stages.end("search")
         plan = Plan(

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from gapath.errors import require
 from gapath.events import (
     Called,
     DriveFinished,
@@ -184,12 +185,17 @@ def _read_evolved(step: int, m: Any) -> Evolved:
 
 
 def _read_surveyed(step: int, m: Any) -> Surveyed:
+    size, points = m.rows * m.cols, len(m.points) // 2
+    require(len(m.obstacles) == -(-size // 8), "/graph", f"{len(m.obstacles)} bytes", "a picture")
+    edges = np.array(m.edges, dtype=np.int32).reshape(-1, 2)
+    inside = m.block >= 1 and bool(((edges >= 0) & (edges < points)).all())
+    require(inside, "/graph", f"{points} points, blocks of {m.block}", "edges between them")
     blocks = np.unpackbits(np.array(m.obstacles, dtype=np.uint8), count=m.rows * m.cols)
     graph = Graph(
         obstacles=blocks.astype(np.bool_).reshape(m.rows, m.cols),
         block=m.block,
         points=np.array(m.points, dtype=np.int32).reshape(-1, 2),
-        edges=np.array(m.edges, dtype=np.int32).reshape(-1, 2),
+        edges=edges,
     )
     return Surveyed(step, m.trial, graph)
 

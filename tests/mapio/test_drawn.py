@@ -4,7 +4,7 @@ import pytest
 
 from gapath.errors import InputError
 from gapath.kernels.row_column import Genotype
-from gapath.mapio.drawn import DRAWINGS, Reader
+from gapath.mapio.drawn import SEARCH_SPACES, Reader
 from gapath.problem import Problem
 from gapath.row_column import Class, classify, express
 
@@ -21,7 +21,7 @@ CLASSES = {
 
 
 def test_there_are_eight():
-    assert sorted(CLASSES) == sorted(DRAWINGS)
+    assert sorted(CLASSES) == sorted(SEARCH_SPACES)
 
 
 @pytest.mark.parametrize("name", CLASSES)

@@ -105,7 +105,7 @@ def test_more_obstacles_than_fit_are_refused(monkeypatch):
     with pytest.raises(InputError) as caught:
         reader(obstacles=1, width=100, height=8192).read()
     assert str(caught.value) == (
-        "map.obstacles: got 1, expected as many as fit on 100 x 8192 pixels, e.g. 6"
+        "map.obstacles: got 1, expected as many as fit on 100 x 8192 pixels, between start and end"
     )
     monkeypatch.setattr(scene, "MAX_DRAWS", 5)
     with pytest.raises(InputError, match=r"^map\.obstacles: got 1000, expected as many as fit"):

@@ -292,9 +292,10 @@ def test_values_at_the_limits_are_accepted():
 def test_what_needs_too_much_memory_is_refused():
     problem = Problem(GridMap("floor", np.full((9, 9), 0.5)), (0, 0), (8, 8))
     planner = ga(genes=1000, max_epochs=10**6)
+    assert planner.plan(problem, rng.stream(0)).status is PlanStatus.NOT_FOUND  # of a drive
     with pytest.raises(InputError) as caught:
-        planner.plan(problem, rng.stream(0))
+        planner.check(problem)
     assert str(caught.value) == (
-        "planner.max_epochs: got 1000000 with 1000 genes: 11.2 GiB, expected settings that need "
+        "planner.max_epochs: got 1000000 with 1000 genes: 18.7 GiB, expected settings that need "
         "at most 1 GiB"
     )

@@ -84,8 +84,9 @@ def graphs(draw):
     """Any graph; its picture need not have whole bytes."""
     shape = st.tuples(st.integers(1, 9), st.integers(1, 9))
     obstacles = draw(arrays(np.bool_, shape))
-    pairs = st.tuples(st.integers(0, 9), st.just(2))
-    points, edges = draw(arrays(np.int32, pairs)), draw(arrays(np.int32, pairs))
+    points = draw(arrays(np.int32, st.tuples(st.integers(0, 9), st.just(2))))
+    some = st.tuples(st.integers(0, 9 if len(points) else 0), st.just(2))
+    edges = draw(arrays(np.int32, some, elements=st.integers(0, max(len(points) - 1, 0))))
     return Graph(obstacles, draw(st.integers(1, 2**32 - 1)), points, edges)
 
 

@@ -9,12 +9,15 @@ from visibility_strategies import ga, make, map_of
 
 from gapath import log_cli
 from gapath.config import Run
+from gapath.errors import InputError
 from gapath.events import Evolved, RunStarted, Surveyed, TrialFinished, TrialStarted
 from gapath.experiment import execute
 from gapath.plan_task import PlanTask
 from gapath.planners.inflated import Planner as Inflated
 from gapath.problem import PlanStatus, Problem
 from gapath.recorders import mcap, rerun
+from gapath.recorders._cdr import record
+from gapath.recorders._messages import event
 from gapath.rng import stream
 
 
@@ -137,3 +140,22 @@ def test_a_graph_without_a_way_is_shown(tmp_path):
         "in the graph that the planner made"
         in read(folder / "trial-1.rrd")["/text", "TextDocument:text"][0]
     )
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ((0, 100000, 40000, 1, [255], [0, 0], []), "1 bytes"),
+        ((0, 1, 8, 0, [255], [0, 0], []), "blocks of 0"),
+        ((0, 1, 8, 1, [255], [0, 0, 1, 1], [0, 2]), "2 points"),
+        ((0, 1, 8, 1, [255], [0, 0, 1, 1], [-1, 0]), "2 points"),
+    ],
+)
+def test_a_graph_that_cannot_be_is_refused_before_it_is_unpacked(values, message):
+    trial, rows, cols, block, picture, points, edges = values
+    made = record(
+        "/graph", 0, trial, rows, cols, block, np.array(picture, dtype=np.uint8),
+        np.array(points, dtype=np.int32), np.array(edges, dtype=np.int32),
+    )  # fmt: skip
+    with pytest.raises(InputError, match=message):
+        event(*made)
