@@ -97,8 +97,8 @@ def _figure(found: dict[str, dict[str, First]], look: dict[str, Look]) -> Figure
     return Figure(
         "m22_paths",
         "The first path that each planner found, on the first of the reconstructed scenes: M22 "
-        "with its limit of 20 generations and without, the shortest path over corners, and KG18's GA 3, whose way "
-        "points lie anywhere. Orange: what the obstacles grew by.",
+        "with its limit of 20 generations and without, the shortest path over corners, and KG18's "
+        "GA 3, whose way points lie anywhere. Orange: what the obstacles grew by.",
         f"{len(found)} scenes with paths. " + " ".join(sentences),
         svg,
         png,
