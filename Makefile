@@ -11,7 +11,7 @@ help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' Makefile | sed 's/:.*## /\t/' | awk -F '\t' '{printf "make %-9s %s\n", $$1, $$2}'
 
 # These give computing times, or take both cores, so they run alone; the others two at a time.
-TIMED := table1 drives drives_enclosed s04_drives s04_table1 m22 m22_exact m22_concave
+TIMED := table1 drives drives_enclosed s04_drives s04_table1 m22 m22_concave
 # What no paper has: one decision at a time, many settings; each takes minutes of its own.
 OWN := drive_choices s04_sweep
 OTHERS := $(filter-out $(TIMED) $(OWN),$(basename $(notdir $(wildcard conf/experiment/*.yaml))))
