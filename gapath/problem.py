@@ -134,6 +134,11 @@ class Graph(NamedTuple):
     edges: NDArray[np.int32]
     """(m, 2) numbers of the points that a free line joins, the smaller one first."""
 
+    def grown(self, rows: int, cols: int) -> NDArray[np.bool_]:
+        """Give the obstacles in the size of the map, (rows, cols)."""
+        blocks = np.kron(self.obstacles, np.ones((self.block, self.block), dtype=np.bool_))
+        return np.asarray(blocks[:rows, :cols])
+
 
 def no_path() -> NDArray[np.int32]:
     """Give the path of no fields."""

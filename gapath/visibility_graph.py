@@ -36,9 +36,9 @@ class VisibilityGraph(NamedTuple):
     scale: int
     """Pixels of the map, along a side, that are one of the picture."""
     obstacle_count: int
+    """Number of obstacles."""
     full: Picture
     """The grown obstacles at full size, (rows, cols) of the map."""
-    """Number of obstacles."""
 
     def shortest(self, informed: bool) -> tuple[NDArray[np.int32], int]:
         """Find the shortest path through the graph.

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
 from numpy.typing import NDArray
 
 from gapath.errors import InputError
@@ -56,17 +57,13 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
     return Section("M22's pipeline in pictures", skipped=tuple(skipped)) if skipped else None
 
 
-def grown_picture(grid: GridMap, graph: Graph) -> NDArray[np.bool_]:
-    """Give the grown obstacles in the size of the map, (rows, cols)."""
-    blocks = np.kron(graph.obstacles, np.ones((graph.block, graph.block), dtype=np.bool_))
-    return np.asarray(blocks[: grid.rows, : grid.cols])
-
-
 def draw_picture(axes: Axes, grid: GridMap, graph: Graph | None) -> None:
     """Draw obstacles white on black, and what they grew by in a colour."""
     picture = np.zeros((grid.rows, grid.cols, 3))
     if graph is not None:
-        picture[grown_picture(grid, graph)] = [int(_GROWN[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+        picture[graph.grown(grid.rows, grid.cols)] = [
+            int(_GROWN[i : i + 2], 16) / 255 for i in (1, 3, 5)
+        ]
     picture[grid.obstacles] = 1.0
     axes.imshow(picture, interpolation="nearest")
     axes.grid(visible=False)

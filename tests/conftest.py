@@ -23,6 +23,26 @@ def data():
     return place
 
 
+@pytest.fixture
+def gapath(monkeypatch, capfd, tmp_path):
+    """Run the command in this process; gives exit code, output and error output."""
+
+    def call(*arguments, output=tmp_path / "out"):
+        extra = [f"output={output}"] if output else []
+        from gapath import cli  # not before a test asks for it: it imports Hydra
+
+        monkeypatch.setattr(sys, "argv", ["gapath", *map(str, arguments), *extra])
+        try:
+            cli.main()
+            code = 0
+        except SystemExit as stop:
+            code = stop.code or 0
+        return code, *capfd.readouterr()
+
+    monkeypatch.chdir(tmp_path)
+    return call
+
+
 def pytest_addoption(parser):
     parser.addoption("--update-golden", action="store_true", help="accept today's results")
 

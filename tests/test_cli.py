@@ -18,24 +18,6 @@ WALLED = "type octile\nheight 3\nwidth 5\nmap\n..@..\n..@..\n..@..\n"
 ENDS = ["map.start=[0,0]", "map.target=[4,2]"]
 
 
-@pytest.fixture
-def gapath(monkeypatch, capfd, tmp_path):
-    """Run the command in this process; gives exit code, output and error output."""
-
-    def call(*arguments, output=tmp_path / "out"):
-        extra = [f"output={output}"] if output else []
-        monkeypatch.setattr(sys, "argv", ["gapath", *map(str, arguments), *extra])
-        try:
-            cli.main()
-            code = 0
-        except SystemExit as stop:
-            code = stop.code or 0
-        return code, *capfd.readouterr()
-
-    monkeypatch.chdir(tmp_path)
-    return call
-
-
 def only(folder):
     (path,) = folder.iterdir()
     return path

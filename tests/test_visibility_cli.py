@@ -1,7 +1,6 @@
 """M22's planners through the command: photographs, robots that do not fit, bad pictures."""
 
 import json
-import sys
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -12,24 +11,6 @@ from gapath import cli
 from gapath.api import load_map
 from gapath.obstacle_image import dilate
 from gapath.recorders import mcap
-
-
-@pytest.fixture
-def gapath(monkeypatch, capfd, tmp_path):
-    """Run the command in this process; gives exit code, output and error output."""
-
-    def call(*arguments):
-        words = ["gapath", *map(str, arguments), f"output={tmp_path / 'out'}"]
-        monkeypatch.setattr(sys, "argv", words)
-        try:
-            cli.main()
-            code = 0
-        except SystemExit as stop:
-            code = stop.code or 0
-        return code, *capfd.readouterr()
-
-    monkeypatch.chdir(tmp_path)
-    return call
 
 
 def row_of(tmp_path):

@@ -78,8 +78,7 @@ def _log_map(stream: rr.RecordingStream, grid: GridMap) -> None:
 
 def _log_graph(stream: rr.RecordingStream, grid: GridMap, graph: Graph) -> None:
     """Log what the planner made of the map: grown obstacles, keypoints, free lines."""
-    grown = np.kron(graph.obstacles, np.ones((graph.block, graph.block), dtype=np.bool_))
-    grown = grown[: grid.rows, : grid.cols] & ~grid.obstacles
+    grown = graph.grown(grid.rows, grid.cols) & ~grid.obstacles
     rim = np.zeros((grid.rows, grid.cols, 4), dtype=np.uint8)
     rim[grown] = (*VERMILLION, 110)
     stream.log("map/grown_obstacles", rr.Image(rim, color_model="RGBA", draw_order=5), static=True)

@@ -165,7 +165,7 @@ def test_a_grown_picture_has_the_maps_size(outputs):
         if first.graph is None:
             continue
         grid = first.start.problem.map
-        grown = figure_m22_pipeline.grown_picture(grid, first.graph)
+        grown = first.graph.grown(grid.rows, grid.cols)
         assert grown.shape == (grid.rows, grid.cols)
         assert (grown | ~grid.obstacles).all()  # an obstacle is one
         if len(first.way_points):
