@@ -61,9 +61,7 @@ def draw_picture(axes: Axes, grid: GridMap, graph: Graph | None) -> None:
     """Draw obstacles white on black, and what they grew by in a colour."""
     picture = np.zeros((grid.rows, grid.cols, 3))
     if graph is not None:
-        picture[graph.grown(grid.rows, grid.cols)] = [
-            int(_GROWN[i : i + 2], 16) / 255 for i in (1, 3, 5)
-        ]
+        picture[graph.grown(grid.rows, grid.cols)] = to_rgb(_GROWN)
     picture[grid.obstacles] = 1.0
     axes.imshow(picture, interpolation="nearest")
     axes.grid(visible=False)
