@@ -30,7 +30,7 @@ from benchmarks import (
     visibility_library,
 )
 from benchmarks.measure import MAPS, SETTINGS, interleave, make_planner, make_problem, quartiles
-from gapath.problem import CornerCutting, PlanStatus, Problem
+from gapath.problem import CornerCutting, Problem
 from gapath.rng import stream
 
 
@@ -62,18 +62,6 @@ def test_another_result_is_noticed():
     other = ga_run.plan_with(textbook.evolve, ga, problem, stream(1))
     with pytest.raises(RuntimeError, match="textbook kernel gives another result"):
         ga_run.check_identical(ours, other, "textbook")
-
-
-@settings(max_examples=50)
-@given(problems())
-def test_the_exact_peers_agree_on_random_maps(problem):
-    problem = Problem(problem.map, problem.start, problem.target, CornerCutting.ALLOW)
-    if exact.shortest_path(problem).status is PlanStatus.INFEASIBLE:
-        return
-    costs = {name: prepare(problem)()[0] for name, prepare in exact.PEERS.items()}
-    ours = costs.pop("gapath A*")
-    # fixed point against floats: a weight is rounded by at most 1 / 131072
-    assert list(costs.values()) == pytest.approx([ours] * 3, abs=problem.map.weights.size / 131072)
 
 
 def test_generations_are_timed_for_every_rival(monkeypatch):
@@ -288,7 +276,8 @@ def test_the_command_writes_what_it_prints(tmp_path, monkeypatch, capsys):
     with (output / "exact.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == len(MAPS) * len(exact.PEERS)
-    assert all(float(row["solve us q1"]) <= float(row["solve us"]) for row in rows)
+    solved = [row for row in rows if not row["solve us"].startswith("skipped")]
+    assert all(float(row["solve us q1"]) <= float(row["solve us"]) for row in solved)
     page = (output / "README.md").read_text()
     assert "quick, not to be quoted" in page and "| kg18_test4 | skimage MCP" in page
     assert "1/1 exact" in printed.err
