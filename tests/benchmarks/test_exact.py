@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
+from hypothesis import strategies as st
 from strategies import problems
 
 sys.path.insert(0, str(Path(__file__).parents[2]))  # benchmarks is not installed
@@ -36,9 +37,9 @@ def test_a_peer_agrees_on_random_maps(name):
         pytest.importorskip(peer.extra, reason="the bench extra is not installed")
 
     @settings(max_examples=40)
-    @given(problems())
-    def agree(problem):
-        problem = posed(problem, peer.zeros)
+    @given(problems(), st.booleans())
+    def agree(problem, zeros):
+        problem = posed(problem, zeros and peer.zeros)
         optimum = exact.shortest_path(problem)
         assume(optimum.status is PlanStatus.FOUND and problem.start != problem.target)
         assert exact.why_not(peer, problem) is None
