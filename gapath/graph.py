@@ -25,27 +25,18 @@ def shortest_path(problem: Query, informed: bool = True, by_length: bool = False
     Plan
         FOUND, or INFEASIBLE where no path exists. Its cost is eq. (5) either way.
     """
-    grid = problem.map
-    costs = np.zeros(grid.rows * grid.cols, dtype=np.int64)
-    arrivals = np.empty(costs.size, dtype=np.int8)
+    grid, table = problem.map, problem.map.table
+    (x, y), (u, v) = problem.start, problem.target
+    # zeros that nobody touches cost nothing: large maps get them from fresh pages
+    states = np.zeros(table.size, dtype=np.int64)
     expansions = np.zeros(1, dtype=np.int64)
-    cost = search(
-        grid.table,
-        problem.start,
-        problem.target,
-        int(problem.corner_cutting),
-        by_length,
-        informed,
-        grid.least_weight(problem.start, problem.target),
-        costs,
-        arrivals,
-        expansions,
-    )
+    rule, least = int(problem.corner_cutting), grid.least_weight(problem.start, problem.target)
+    cost = search(table, x, y, u, v, rule, by_length, informed, least, states, expansions)
     if cost < 0:
         return Plan(PlanStatus.INFEASIBLE, expansions=int(expansions[0]))
-    path = path_to(arrivals, grid.cols, problem.start, problem.target)
+    path = path_to(states, table.shape[1], u, v)
     if by_length:
-        total = int(grid.table[path[:, 1], path[:, 0]].sum(dtype=np.int64))
+        total = int(table[path[:, 1], path[:, 0]].sum(dtype=np.int64))
     else:
-        total = int(cost) + int(grid.table[problem.start[1], problem.start[0]])
+        total = int(cost) + int(table[y, x])
     return Plan(PlanStatus.FOUND, path, total / SCALE, expansions=int(expansions[0]))

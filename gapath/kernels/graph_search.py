@@ -1,7 +1,9 @@
-"""A* and Dijkstra on the 8-connected grid, with one heap and one rule for ties.
+"""A* and Dijkstra on the 8-connected grid, with one queue and one rule for ties.
 
-The priority of a field is its estimated cost in the upper 47 bits and its Chebyshev
-distance to the target in the lower 16, so that equal costs are settled towards the target.
+The queue is a radix heap (Ahuja, Mehlhorn, Orlin & Tarjan 1990), which priorities that never
+fall below the last one taken allow: an item lies in the bucket of the highest bit in which its
+priority differs from that one, and moves to lower buckets only. Of equal priorities the newest
+goes first. As steps towards the target keep A*'s estimate equal, it goes on towards the target.
 """
 
 import numpy as np
@@ -10,9 +12,6 @@ from numpy.typing import NDArray
 from gapath._jit import kernel
 from gapath.kernels.fitness import ALLOW, cuts_corner
 from gapath.units import OBSTACLE
-
-TIE_BITS = 16
-"""Bits of the Chebyshev distance: maps have at most 2**16 fields a side."""
 
 STRAIGHT = 1 << 20
 """Length of a straight step, in the unit of lengths."""
@@ -23,80 +22,77 @@ DIAGONAL = 1482910
 STEP_X = np.array([1, -1, 0, 0, 1, 1, -1, -1], dtype=np.int64)
 STEP_Y = np.array([0, 0, 1, -1, 1, -1, 1, -1], dtype=np.int64)
 
+BUCKETS = 64
+NONE = -1
+PRIORITY, FIELD, NEXT = 0, 1, 2  # of an item; NEXT is the number of the next one in its bucket
 
-@kernel
-def push(
-    keys: NDArray[np.int64], fields: NDArray[np.int64], size: int, key: int, place: int
-) -> None:
-    """Put an item into a binary heap of `size` items that has room for one more."""
-    at = size
-    while at > 0:
-        above = (at - 1) >> 1
-        if keys[above] <= key:
-            break
-        keys[at], fields[at] = keys[above], fields[above]
-        at = above
-    keys[at], fields[at] = key, place
+STATE_BITS = 4
+"""A field's state is its cost and, in these bits, the step that led to it plus 2, 1 for the
+start; negative once the field is settled, 0 as long as it is unseen."""
 
 
 @kernel
-def drop_first(keys: NDArray[np.int64], fields: NDArray[np.int64], size: int) -> None:
-    """Take the first item out of a heap of `size` items; size - 1 remain."""
-    last = size - 1
-    key, place = keys[last], fields[last]
-    at = 0
-    while True:
-        below = 2 * at + 1
-        if below >= last:
-            break
-        if below + 1 < last and keys[below + 1] < keys[below]:
-            below += 1
-        if keys[below] >= key:
-            break
-        keys[at], fields[at] = keys[below], fields[below]
-        at = below
-    keys[at], fields[at] = key, place
+def bucket_of(priority: int, last: int) -> int:
+    """Give the number of bits from the highest on in which two priorities differ."""
+    difference = np.uint64(priority ^ last)
+    bits = 0
+    while difference != 0:  # one machine instruction, once compiled
+        difference >>= np.uint64(1)
+        bits += 1
+    return bits
 
 
 @kernel
-def estimate(dx: int, dy: int, by_length: bool, least: int, target_weight: int) -> int:
-    """Give a lower bound of the cost from a field to the target.
+def refill(items: NDArray[np.int64], firsts: NDArray[np.int64]) -> int:
+    """Move the items of the lowest bucket that has any to where the least of them is the last.
 
     Parameters
     ----------
-    dx, dy : int
-        Distances to the target along the axes, not negative.
-    by_length : bool
-        Count lengths instead of weights.
-    least : int
-        The least weight of any field between.
-    target_weight : int
-        The weight of the target.
+    items : (n, 3) int64
+        PRIORITY, FIELD, NEXT of each item; changed in place.
+    firsts : (BUCKETS,) int64
+        Newest item of each bucket or NONE, bucket 0 being empty; changed in place.
 
     Returns
     -------
     int
-        Octile distance, or least * (Chebyshev distance - 1) + target_weight.
+        The least priority, whose items are now in bucket 0; NONE if there are no items.
     """
-    longer, shorter = max(dx, dy), min(dx, dy)
-    if longer == 0:
-        return 0
-    if by_length:
-        return (longer - shorter) * STRAIGHT + shorter * DIAGONAL
-    return (longer - 1) * least + target_weight
+    bucket = 1
+    while bucket < BUCKETS and firsts[bucket] == NONE:
+        bucket += 1
+    if bucket == BUCKETS:
+        return np.int64(NONE)
+    item, oldest = firsts[bucket], np.int64(NONE)
+    firsts[bucket] = NONE
+    least = items[item, PRIORITY]
+    while item != NONE:  # turn the list round, so that the newest is put last
+        least = min(least, items[item, PRIORITY])
+        after = items[item, NEXT]
+        items[item, NEXT] = oldest
+        item, oldest = after, item
+    item = oldest
+    while item != NONE:
+        after = items[item, NEXT]
+        bucket = bucket_of(items[item, PRIORITY], least)
+        items[item, NEXT] = firsts[bucket]
+        firsts[bucket] = item
+        item = after
+    return least
 
 
 @kernel
 def search(
     table: NDArray[np.int32],
-    start: tuple[int, int],
-    target: tuple[int, int],
+    start_x: int,
+    start_y: int,
+    target_x: int,
+    target_y: int,
     rule: int,
     by_length: bool,
     informed: bool,
     least: int,
-    costs: NDArray[np.int64],
-    arrivals: NDArray[np.int8],
+    states: NDArray[np.int64],
     expansions: NDArray[np.int64],
 ) -> int:
     """Find a cheapest path from start to target.
@@ -105,7 +101,7 @@ def search(
     ----------
     table : (rows, cols) int32
         `GridMap.table`.
-    start, target : (x, y)
+    start_x, start_y, target_x, target_y : int
         Free fields.
     rule : int
         Corner-cutting rule.
@@ -115,10 +111,8 @@ def search(
         True for A*, False for Dijkstra.
     least : int
         The least weight of any free field but start and target.
-    costs : (rows * cols,) int64
-        Zeros; holds the cost of every field seen plus one, negative once it is settled.
-    arrivals : (rows * cols,) int8
-        Holds the step by which every field seen was entered.
+    states : (rows * cols,) int64
+        Zeros; holds the state of every field seen (`STATE_BITS`).
     expansions : (1,) int64
         Overwritten with the number of fields expanded. (A kernel that runs for long returns
         one number only: an interrupt while numba makes Python objects kills the process.)
@@ -130,43 +124,51 @@ def search(
     """
     rows, cols = table.shape
     weights = table.ravel()
-    if informed:
-        target_weight = np.int64(table[target[1], target[0]])
-    else:
-        least = target_weight = 0
-    moves = STEP_Y * cols + STEP_X
+    target_weight = np.int64(table[target_y, target_x])
+    end = np.uint64(target_y * cols + target_x)
 
-    keys = np.empty(1024, dtype=np.int64)
-    fields = np.empty(1024, dtype=np.int64)
-    end = target[1] * cols + target[0]
-    keys[0] = 0
-    fields[0] = start[1] * cols + start[0]
-    costs[fields[0]] = 1
-    size = 1
+    items = np.empty((256, 3), dtype=np.int64)
+    firsts = np.empty(BUCKETS, dtype=np.int64)
+    firsts[:] = NONE
+    used, spare = 1, np.int64(NONE)  # items made so far, and a list of those to be used again
+    items[0, PRIORITY], items[0, FIELD], items[0, NEXT] = 0, start_y * cols + start_x, NONE
+    firsts[0] = 0
+    last = np.int64(0)
+    states[items[0, FIELD]] = 1
     expansions[0] = 0
-    while size > 0:
-        place = fields[0]
-        drop_first(keys, fields, size)
-        size -= 1
-        cost = costs[place]
+    while True:
+        if firsts[0] == NONE:
+            last = refill(items, firsts)
+            if last == NONE:
+                return np.int64(-1)
+        item = firsts[0]
+        place = items[item, FIELD]
+        firsts[0] = items[item, NEXT]
+        items[item, NEXT] = spare
+        spare = item
+        state = states[place]
         if place == end:
-            return cost - 1
-        if cost < 0:
-            continue  # settled: it was pushed again when a cheaper way was found
-        costs[place] = -cost
+            return state >> STATE_BITS
+        if state < 0:
+            continue  # it was put in again when a cheaper way was found
+        states[place] = -state
+        cost = state >> STATE_BITS
         expansions[0] += 1
-        if size + 8 > keys.shape[0]:
-            keys = np.concatenate((keys, np.empty_like(keys)))
-            fields = np.concatenate((fields, np.empty_like(fields)))
+        if used + 8 > items.shape[0]:
+            more = np.empty((2 * items.shape[0], 3), dtype=np.int64)
+            for i in range(used):
+                for j in range(3):
+                    more[i, j] = items[i, j]
+            items = more
         y0 = place // cols
         x0 = place - y0 * cols
         at_border = x0 == 0 or y0 == 0 or x0 == cols - 1 or y0 == rows - 1
-        for step in range(8):
+        for step in range(7, -1, -1):  # the last one put in goes first
             x1, y1 = x0 + STEP_X[step], y0 + STEP_Y[step]
             if at_border and not (0 <= x1 < cols and 0 <= y1 < rows):
                 continue
-            neighbour = place + moves[step]
-            known = costs[neighbour]
+            neighbour = np.uint64(y1 * cols + x1)  # unsigned: numba need not look for a sign
+            known = states[neighbour]
             weight = np.int64(weights[neighbour])
             if known < 0 or weight >= OBSTACLE:
                 continue
@@ -175,31 +177,42 @@ def search(
             if by_length:
                 weight = STRAIGHT if step < 4 else DIAGONAL
             through = cost + weight
-            if known == 0 or through < known:
-                costs[neighbour] = through
-                arrivals[neighbour] = step
-                dx, dy = abs(target[0] - x1), abs(target[1] - y1)
-                bound = through
-                if informed:
-                    bound += estimate(dx, dy, by_length, least, target_weight)
-                push(keys, fields, size, (bound << TIE_BITS) + max(dx, dy), neighbour)
-                size += 1
-    return np.int64(-1)
+            if known != 0 and through >= known >> STATE_BITS:
+                continue
+            states[neighbour] = (through << STATE_BITS) + step + 2
+            priority = through
+            if informed and neighbour != end:
+                dx, dy = abs(target_x - x1), abs(target_y - y1)
+                longer, shorter = max(dx, dy), min(dx, dy)
+                if by_length:
+                    priority += (longer - shorter) * STRAIGHT + shorter * DIAGONAL
+                else:
+                    priority += (longer - 1) * least + target_weight
+            if spare == NONE:
+                item = used
+                used += 1
+            else:
+                item = spare
+                spare = items[item, NEXT]
+            bucket = bucket_of(priority, last)
+            items[item, PRIORITY], items[item, FIELD] = priority, neighbour
+            items[item, NEXT] = firsts[bucket]
+            firsts[bucket] = item
 
 
 @kernel
 def path_to(
-    arrivals: NDArray[np.int8], cols: int, start: tuple[int, int], target: tuple[int, int]
+    states: NDArray[np.int64], cols: int, target_x: int, target_y: int
 ) -> NDArray[np.int32]:
     """Follow the steps back from the target.
 
     Parameters
     ----------
-    arrivals : (rows * cols,) int8
+    states : (rows * cols,) int64
         As `search` left it.
     cols : int
         Width of the map.
-    start, target : (x, y)
+    target_x, target_y : int
         As in the search.
 
     Returns
@@ -207,17 +220,16 @@ def path_to(
     (n, 2) int32
         Fields (x, y) from start to target.
     """
-    x, y = target
-    count = 1
-    while (x, y) != start:
-        step = arrivals[y * cols + x]
-        x, y = x - STEP_X[step], y - STEP_Y[step]
-        count += 1
+    mask = (1 << STATE_BITS) - 1
+    x, y, count = target_x, target_y, 1
+    step = (abs(states[y * cols + x]) & mask) - 2
+    while step >= 0:
+        x, y, count = x - STEP_X[step], y - STEP_Y[step], count + 1
+        step = (abs(states[y * cols + x]) & mask) - 2
     path = np.empty((count, 2), dtype=np.int32)
-    x, y = target
+    x, y = target_x, target_y
     for i in range(count - 1, -1, -1):
         path[i, 0], path[i, 1] = x, y
-        if i > 0:
-            step = arrivals[y * cols + x]
-            x, y = x - STEP_X[step], y - STEP_Y[step]
+        step = (abs(states[y * cols + x]) & mask) - 2
+        x, y = x - STEP_X[step], y - STEP_Y[step]
     return path

@@ -1,11 +1,13 @@
-"""A* and Dijkstra against scikit-image, against Bellman's equation, and each other."""
+"""A* and Dijkstra against scikit-image, Bellman's equation, each other, and a slow twin."""
 
+import heapq
 import math
 
 import naive
 import numpy as np
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 from skimage.graph import MCP
 from strategies import problems
 
@@ -13,6 +15,65 @@ from gapath.graph import shortest_path
 from gapath.grid import SCALE, GridMap
 from gapath.metrics import flaw, path_metrics
 from gapath.problem import CornerCutting, PlanStatus, Problem
+
+STEPS = [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)]
+
+
+def naive_search(problem, informed):
+    """Expand what has the least priority, the newest of several; give path and expansions."""
+    grid, start, target = problem.map, problem.start, problem.target
+    rule = problem.corner_cutting.name.lower()
+    table = grid.table.tolist()
+
+    def estimate(x, y):
+        distance = max(abs(target[0] - x), abs(target[1] - y))
+        if not informed or distance == 0:
+            return 0
+        least = grid.least_weight(start, target)
+        return least * (distance - 1) + table[target[1]][target[0]]
+
+    queue, number = [(0, 0, start)], 0
+    costs, before, expanded = {start: 0}, {}, set()
+    while queue:
+        place = heapq.heappop(queue)[2]
+        if place == target:
+            path = [place]
+            while path[0] != start:
+                path.insert(0, before[path[0]])
+            return path, len(expanded)
+        if place in expanded:
+            continue
+        expanded.add(place)
+        for dx, dy in reversed(STEPS):
+            x, y = neighbour = (place[0] + dx, place[1] + dy)
+            if naive.is_obstacle(grid.weights, x, y) or neighbour in expanded:
+                continue
+            cost = costs[place] + table[y][x]
+            cut = naive.forbidden(grid.weights, place, neighbour, rule)
+            if cut or cost >= costs.get(neighbour, math.inf):
+                continue
+            costs[neighbour], before[neighbour] = cost, place
+            number += 1
+            heapq.heappush(queue, (cost + estimate(x, y), -number, neighbour))
+    return [], len(expanded)
+
+
+@given(problems(most=16), st.booleans())
+def test_of_equal_priorities_the_newest_goes_first(problem, informed):
+    path, expansions = naive_search(problem, informed)
+    plan = shortest_path(problem, informed)
+    assert [tuple(field) for field in plan.path.tolist()] == path
+    assert plan.expansions == expansions
+
+
+def test_a_queue_of_thousands_grows():
+    weights = np.random.default_rng(0).choice([0.25, 0.5, 0.75, 1.0], (120, 120))
+    weights[60, 60] = weights[119, 119] = 0.5
+    problem = Problem(GridMap("noise", weights), (60, 60), (119, 119))
+    for informed in (True, False):
+        path, expansions = naive_search(problem, informed)
+        plan = shortest_path(problem, informed)
+        assert (plan.path.tolist(), plan.expansions) == ([list(p) for p in path], expansions)
 
 
 @given(problems(most=16))
