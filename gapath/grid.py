@@ -167,16 +167,20 @@ class GridMap:
         return np.equal(self.weights, 1.0)
 
     @cached_property
-    def _lightest(self) -> NDArray[np.int64]:
-        """Indices of the three lightest fields, flat."""
-        flat = self.table.ravel()
-        return np.argpartition(flat, 2)[:3] if flat.size > 3 else np.arange(flat.size)
+    def _lightest(self) -> list[tuple[int, int]]:
+        """Table entry and flat index of the three lightest fields, the lightest first."""
+        flat = self.table.flatten()
+        lightest = []
+        for _ in range(min(3, flat.size)):
+            i = int(flat.argmin())
+            lightest.append((int(flat[i]), i))
+            flat[i] = np.iinfo(flat.dtype).max
+        return lightest
 
     def least_weight(self, start: Field, target: Field) -> int:
         """Give the least table entry of any field but start and target (0 if none is left)."""
         ends = (start[1] * self.cols + start[0], target[1] * self.cols + target[0])
-        entries = [int(self.table.flat[i]) for i in self._lightest if i not in ends]
-        return min(entries, default=0)
+        return next((entry for entry, i in self._lightest if i not in ends), 0)
 
     @cached_property
     def digest(self) -> str:
