@@ -1,4 +1,4 @@
-"""``python -m benchmarks --output DIR [--quick]``: every question, as CSV and one page."""
+"""``python -m benchmarks --output DIR [--quick] [QUESTION ...]``: as CSV and one page."""
 
 import argparse
 import csv
@@ -11,19 +11,28 @@ from typing import Any
 from tabulate import tabulate
 
 from benchmarks.measure import Quartiles, Row, machine
+from benchmarks.targets import TARGETS, judge
 
 QUESTIONS = (
     "ga_run",
+    "epochs",
     "row_column",
     "visibility",
     "visibility_growth",
     "visibility_agreement",
     "exact",
+    "growth",
+    "growth_settings",
     "sweep",
     "logging",
     "drives",
     "cold_start",
 )
+
+INDEX = "questions.csv"
+"""The questions of the last run, written when all have been answered."""
+
+TARGET_COLUMNS = ("what", "target", "measured", "met")
 
 
 def columns(rows: list[Row]) -> list[str]:
@@ -63,31 +72,58 @@ def table(rows: list[Row]) -> str:
     return tabulate(cells, names, tablefmt="github", disable_numparse=True)
 
 
+def ask(names: list[str], quick: bool, folder: Path) -> dict[str, list[Row]]:
+    """Answer questions one after the other; print and write the rows of each."""
+    answers = {}
+    for number, name in enumerate(names, 1):
+        print(f"{number}/{len(names)} {name} ...", file=sys.stderr, flush=True)
+        begin = time.perf_counter()
+        rows = answers[name] = import_module(f"benchmarks.{name}").measure(quick)
+        write_csv(folder / f"{name}.csv", rows)
+        print(f"\n{name}, {time.perf_counter() - begin:.1f} s\n{table(rows)}\n", flush=True)
+    return answers
+
+
+def write_page(folder: Path, about: Row, answers: dict[str, list[Row]]) -> None:
+    """Write the page: targets, machine, every question; and what else `gapath-report` reads."""
+    targets = [judge(target, answers) for target in TARGETS]
+    shown = table([{name: row[name] for name in TARGET_COLUMNS} for row in targets])
+    texts = {name: str(import_module(f"benchmarks.{name}").__doc__).strip() for name in answers}
+    page = [
+        f"# gapath benchmarks ({about['kind']})",
+        shown,
+        "Medians with [lower quartile, upper quartile]; times are wall times.",
+        table([about]),
+    ]
+    for name, rows in answers.items():
+        page += [f"## {name}", texts[name], table(rows)]
+    (folder / "README.md").write_text("\n\n".join(page) + "\n", encoding="utf-8")
+    write_csv(folder / "targets.csv", targets)
+    write_csv(folder / "machine.csv", [about])
+    write_csv(folder / INDEX, [{"question": name, "text": text} for name, text in texts.items()])
+    print(f"targets\n{shown}\n")
+
+
 def main() -> None:
-    """Answer every question, print the tables and write them."""
+    """Answer the questions, print the tables and write them."""
     parser = argparse.ArgumentParser(prog="benchmarks", description=__doc__)
     parser.add_argument("--output", type=Path, required=True, help="folder of the results")
     parser.add_argument("--quick", action="store_true", help="few repetitions: a check, no figures")
+    known = ", ".join(QUESTIONS)
+    parser.add_argument("questions", nargs="*", metavar="QUESTION", help=f"of {known} [all]")
     given = parser.parse_args()
+    for name in given.questions:  # argparse's choices refuse that none is named
+        if name not in QUESTIONS:
+            parser.error(f"QUESTION {name}: no such question; choose from {known}")
     try:
         given.output.mkdir(parents=True, exist_ok=True)
+        (given.output / INDEX).unlink(missing_ok=True)  # results old and new belong to no one run
     except OSError as error:
         parser.error(f"--output {given.output}: {error.strerror}; give a folder to write to")
-
-    kind = "quick, not to be quoted" if given.quick else "full"
-    page = [f"# gapath benchmarks ({kind})", table([machine()])]
-    page.append("Times are wall times: median [lower quartile, upper quartile].")
-    for number, name in enumerate(QUESTIONS, 1):
-        print(f"{number}/{len(QUESTIONS)} {name} ...", file=sys.stderr, flush=True)
-        begin = time.perf_counter()
-        question = import_module(f"benchmarks.{name}")
-        rows = question.measure(given.quick)
-        write_csv(given.output / f"{name}.csv", rows)
-        print(f"\n{name}, {time.perf_counter() - begin:.1f} s\n{table(rows)}\n", flush=True)
-        page += [f"## {name}", question.__doc__.strip(), table(rows)]
-    (given.output / "README.md").write_text("\n\n".join(page) + "\n", encoding="utf-8")
-    names = ", ".join(["README.md", *(f"{name}.csv" for name in QUESTIONS)])
-    print(f"{given.output}: {names}")
+    about = {"kind": "quick, not to be quoted" if given.quick else "full", **machine()}
+    names = [name for name in QUESTIONS if name in given.questions or not given.questions]
+    write_page(given.output, about, ask(names, given.quick, given.output))
+    print(f"{given.output}: {', '.join(['README.md', *(f'{name}.csv' for name in names)])}")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,145 @@
+"""What the benchmarks are to reach, and whether they do.
+
+A target is met if the median of what was measured is; of several rows the worst counts.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple, TypeAlias
+
+from benchmarks.measure import Quartiles, Row
+
+Take: TypeAlias = Callable[[list[Row]], list[Any]]
+"""Takes what counts from a question's rows: numbers, `Quartiles`, or text where there are none."""
+
+
+class Target(NamedTuple):
+    """A limit to what a question measures."""
+
+    what: str
+    question: str
+    sense: str
+    """"<=" or ">="."""
+    limit: float
+    measured: Take
+    unit: str = ""
+    """Of limit and measurement; none for a ratio."""
+
+
+def column(name: str, **where: Any) -> Take:
+    """Take a column of the rows that have certain cells; what was skipped gives its reason."""
+
+    def take(rows: list[Row]) -> list[Any]:
+        cells = [row.get(name, skipped(row)) for row in rows if where.items() <= row.items()]
+        return [cell for cell in cells if cell is not None]
+
+    return take
+
+
+def epochs_of(library: str) -> Take:
+    """Take the ratios of a library of `epochs`, which gives it with its version."""
+    ratios = column("library / gapath")
+    return lambda rows: ratios([row for row in rows if row["library"].split()[0] == library])
+
+
+def skipped(row: Row) -> str | None:
+    """Give the reason why a row has no measurement."""
+    texts = (str(cell) for cell in row.values())
+    return next((text for text in texts if text.startswith("skipped: ")), None)
+
+
+CLASS_1 = {"class": "kg18_test1"}  # no keyword argument can be called class
+
+TARGETS = (
+    Target("100 000 chromosomes evaluated: gapath / C, AVX-512 gathers", "fitness", "<=", 1.1,
+           column("gapath / rival", rival="C, AVX-512 gathers")),
+    Target("100 000 chromosomes evaluated: gapath / plain C", "fitness", "<=", 0.6,
+           column("gapath / rival", rival="plain C")),
+    Target("100 000 chromosomes evaluated: gapath / precomputed indices", "fitness", "<=", 2.5,
+           column("gapath / rival", rival="precomputed indices")),
+    Target("a run of each of GA 1-3, map 1: textbook kernel / gapath", "ga_run", ">=", 3.5,
+           column("textbook / GA", map="kg18_test1")),
+    Target("a run of each of GA 1-3, map 4: textbook kernel / gapath", "ga_run", ">=", 4.5,
+           column("textbook / GA", map="kg18_test4")),
+    Target("an epoch of any population: geneticalgorithm2 / gapath", "epochs", ">=", 40,
+           epochs_of("geneticalgorithm2")),
+    Target("an epoch of any population: deap / gapath", "epochs", ">=", 40,
+           epochs_of("deap")),
+    Target("an epoch of any population: pygad / gapath", "epochs", ">=", 40,
+           epochs_of("pygad")),
+    Target("an epoch of any population: pymoo / gapath", "epochs", ">=", 40,
+           epochs_of("pymoo")),
+    Target("1200 runs in any order: one thread / two", "threads", ">=", 1.9,
+           column("one / two")),
+    Target("class 1, 1000 x 500, the table built: A* / GA 1", "growth", ">=", 40,
+           column("A* / GA, table built", **CLASS_1, size="1000 x 500", planner="ga1")),
+    Target("class 1, 4000 x 4000, the table built: A* / GA 1", "growth", ">=", 300,
+           column("A* / GA, table built", **CLASS_1, size="4000 x 4000", planner="ga1")),
+    Target("the command, cached, no recorder: whole process", "cold_start", "<=", 1.2,
+           column("seconds", process="gapath, cached"), "s"),
+    Target("the command, the very first time: compiling", "cold_start", "<=", 7,
+           column("seconds", process="gapath, uncached"), "s"),
+    Target("a process that imports gapath", "cold_start", "<=", 0.4,
+           column("seconds", process="import gapath"), "s"),
+    Target("Table 1, 12 000 runs, every epoch logged, past start-up", "sweep", "<=", 12,
+           column("total s", map="all", trials=12_000), "s"),
+    Target("logging a trial", "logging", "<=", 60,
+           column("us a trial", map="fit: a trial (a)"), "us"),
+    Target("logging an epoch", "logging", "<=", 1,
+           column("us a trial", map="fit: an epoch (b)"), "us"),
+    Target("a drive on unknown map 1, KG18", "drives", "<=", 2,
+           column("drive ms", map="kg18_map1", navigator="kg18"), "ms"),
+    Target("a drive on unknown map 1, KG18 fast", "drives", "<=", 1,
+           column("drive ms", map="kg18_map1", navigator="kg18_fast"), "ms"),
+    Target("400 drives with KG18 and full logs", "drives", "<=", 20,
+           column("total s", map="all", drives=400), "s"),
+    Target("recording 500 steps of a drive", "drives", "<=", 0.3,
+           column("recording s"), "s"),
+    Target("a recording of 500 steps of a drive", "drives", "<=", 1,
+           column("recording MB"), "MB"),
+    Target("a generation of S04, n = 10, 20, 50: DEAP / gapath", "row_column", ">=", 20,
+           column("gapath / DEAP")),
+    Target("M22, image to path: the paper / gapath", "visibility", ">=", 1000,
+           column("rival / gapath", work="image to path", rival="the paper")),
+    Target("a generation of M22: geneticalgorithm2 / gapath", "visibility", ">=", 50,
+           column("rival / gapath", work="a generation")),
+)  # fmt: skip
+
+
+def judge(target: Target, answers: Mapping[str, list[Row]]) -> Row:
+    """Hold what was measured against a target.
+
+    Parameters
+    ----------
+    target : Target
+        The target.
+    answers : mapping of str to list of dict
+        The rows of each question that was asked.
+
+    Returns
+    -------
+    dict
+        A row of the table: what, question, target, measured, and in "met" either "met", "missed"
+        or "not measured" with the reason.
+    """
+    unit = f" {target.unit}" if target.unit else ""
+    row = {
+        "what": target.what,
+        "question": target.question,
+        "target": f"{target.sense} {target.limit:g}{unit}",
+        "measured": None,
+    }
+    if target.question not in answers:
+        return row | {"met": f"not measured: {target.question} was not run"}
+    found = target.measured(answers[target.question])
+    reasons = [value for value in found if isinstance(value, str)]
+    if reasons or not found:
+        return row | {"met": f"not measured: {(reasons or ['not in this form'])[0]}"}
+    below = target.sense == "<="
+    worst = (max if below else min)(found, key=median)
+    met = median(worst) <= target.limit if below else median(worst) >= target.limit
+    return row | {"measured": worst, "met": "met" if met else "missed"}
+
+
+def median(value: Any) -> float:
+    """Give a measurement's median."""
+    return float(value.median if isinstance(value, Quartiles) else value)
