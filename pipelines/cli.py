@@ -49,8 +49,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _report_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         "gapath-report",
-        description="Make tables (CSV, Markdown, LaTeX), figures (SVG, PNG) and one web page from "
-        "whatever runs are there.",
+        description="Make tables (CSV, Markdown, LaTeX), figures (SVG, PNG) and a web page from "
+        "whatever runs are there; another one, bench.html, if OUTPUTS/bench has benchmarks.",
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )

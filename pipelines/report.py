@@ -1,75 +1,75 @@
 """The report: every table and figure as files, and all of them on one page."""
 
-import base64
 import os
 import platform
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 from importlib.metadata import version
 from pathlib import Path
 from types import ModuleType
 
 import pandas as pd
-from jinja2 import Environment, FileSystemLoader
 from tqdm import tqdm
 
 from gapath.durable import write_whole
 from gapath.errors import InputError, require
 
+from .bench import make_bench_page
 from .collect import Skipped, read_trials
 from .command import as_sweeps
+from .page import Part, files_of, render
 from .runs import Run, find_runs
-from .section import Section, find_sections
-
-_HERE = Path(__file__).parent
-
-
-@dataclass(frozen=True)
-class Part:
-    """A section as the page shows it: with the commands that made its trials.
-
-    Parameters
-    ----------
-    anchor : str
-        The name of the section's place on the page.
-    section : Section
-        Its content.
-    commands : list of str
-        What to type to make its runs.
-    """
-
-    anchor: str
-    section: Section
-    commands: list[str]
+from .section import find_sections
 
 
 def make_report(outputs: Path, folder: Path) -> tuple[list[Path], list[Skipped]]:
-    """Write tables, figures and the page from all runs below a folder.
+    """Write tables, figures and the pages from all runs and benchmarks below a folder.
 
     Parameters
     ----------
     outputs : Path
-        The folder that holds ``<experiment>/<key>/``.
+        The folder that holds ``<experiment>/<key>/`` and ``bench/``.
     folder : Path
         Where to write; made if it does not exist.
 
     Returns
     -------
     files : list of Path
-        What was written, the page ``index.html`` last.
+        What was written, the page ``index.html`` last; ``bench.html`` where there are no runs.
     skipped : list of Skipped
         The runs that were left out, and why.
 
     Raises
     ------
     InputError
-        If there is no such folder, or no run in it that can be used.
+        If there is no such folder, or neither a run nor benchmarks in it that can be used.
     """
+    files, skipped = make_bench_page(outputs / "bench")
+    try:
+        more, skipped = _runs_page(outputs, bool(files), skipped)
+        files += more
+    except InputError as error:
+        if not files:
+            raise
+        skipped.append(Skipped("runs", str(error)))
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, content in files:
+            write_whole(folder / name, content)
+    except OSError as error:
+        raise InputError(folder, error.strerror, "a folder that can be written") from error
+    return [folder / name for name, _ in files], skipped
+
+
+def _runs_page(
+    outputs: Path, bench: bool, skipped: list[Skipped]
+) -> tuple[list[tuple[str, bytes]], list[Skipped]]:
+    """Make the page of the runs, with a link to the benchmarks' and what was left out of that."""
     runs = find_runs(outputs)
-    plans, drives, skipped = read_trials(runs)
-    first = f"; {skipped[0].run}: {skipped[0].reason}" if skipped else ""
+    plans, drives, unusable = read_trials(runs)
+    first = f"; {unusable[0].run}: {unusable[0].reason}" if unusable else ""
     require(len(plans) + len(drives) > 0, outputs, f"{len(runs)} runs of which none can be used"
             f"{first}", "a finished run")  # fmt: skip
+    skipped = skipped + unusable
     runs = _runs_of([plans, drives], runs)
     parts = []
     modules = find_sections()
@@ -85,60 +85,21 @@ def make_report(outputs: Path, folder: Path) -> tuple[list[Path], list[Skipped]]
             parts.append(part)
             skipped += [Skipped(*entry) for entry in part.section.skipped]
     skipped = list(dict.fromkeys(skipped))  # two figures may read the same log
-    page = render_page(parts, [plans, drives], runs, skipped)
-    files = [file for part in parts for file in _files(part.section)]
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for name, content in [*files, ("index.html", page.encode())]:
-            write_whole(folder / name, content)
-    except OSError as error:
-        raise InputError(folder, error.strerror, "a folder that can be written") from error
-    return [folder / name for name, _ in files] + [folder / "index.html"], skipped
-
-
-def render_page(
-    parts: Sequence[Part],
-    trials: Sequence[pd.DataFrame],
-    runs: Sequence[Run],
-    skipped: Sequence[Skipped],
-) -> str:
-    """Render the page: one file that asks nothing of a network.
-
-    Parameters
-    ----------
-    parts : sequence of Part
-        The sections in their order.
-    trials : sequence of DataFrame
-        All trials, a frame a task.
-    runs : sequence of Run
-        The runs they come from.
-    skipped : sequence of Skipped
-        The runs that were left out, and why.
-
-    Returns
-    -------
-    str
-        HTML.
-    """
-    environment = Environment(
-        loader=FileSystemLoader(_HERE),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
-    environment.filters["base64"] = lambda data: base64.b64encode(data).decode()
-    return environment.get_template("report.html.j2").render(
-        css=(_HERE / "report.css").read_text(encoding="utf-8"),
+    frames = [plans, drives]
+    page = render(
+        "report.html.j2",
         parts=parts,
-        trials=sum(map(len, trials)),
+        bench=bench,
+        trials=sum(map(len, frames)),
         runs=runs,
-        reconstructed=any((frame["map_source"] == "reconstructed").any() for frame in trials),
+        reconstructed=any((frame["map_source"] == "reconstructed").any() for frame in frames),
         skipped=skipped,
         versions=_versions(runs),
         machine=_machine(),
         made=max(run.date for run in runs)[:16].replace("T", " "),
     )
+    files = [file for part in parts for file in files_of(part.section)]
+    return [*files, ("index.html", page.encode())], skipped
 
 
 def _runs_of(trials: Iterable[pd.DataFrame], runs: Sequence[Run]) -> list[Run]:
@@ -155,17 +116,6 @@ def _part(module: ModuleType, trials: pd.DataFrame, runs: Sequence[Run]) -> Part
         return None
     commands = as_sweeps(run.manifest["command"] for run in runs)
     return Part(module.__name__.rpartition(".")[2], section, commands)
-
-
-def _files(section: Section) -> Iterator[tuple[str, bytes]]:
-    """Give the name and content of each file of a section."""
-    for table in section.tables:
-        yield f"{table.name}.csv", table.csv().encode()
-        yield f"{table.name}.md", table.markdown().encode()
-        yield f"{table.name}.tex", table.latex().encode()
-    for figure in section.figures:
-        yield f"{figure.name}.svg", figure.svg
-        yield f"{figure.name}.png", figure.png
 
 
 def _versions(runs: Sequence[Run]) -> list[tuple[str, str]]:

@@ -126,8 +126,13 @@ class Section:
 
 def find_sections() -> list[ModuleType]:
     """Find the modules of this folder that make a section, in the order of the page."""
+    return find_modules("table*.py", "figure_*.py")
+
+
+def find_modules(*patterns: str) -> list[ModuleType]:
+    """Find the modules of this folder whose files are called so, in the order of their `ORDER`."""
     folder = Path(__file__).parent
-    names = [path.stem for pattern in ("table*.py", "figure_*.py") for path in folder.glob(pattern)]
+    names = [path.stem for pattern in patterns for path in folder.glob(pattern)]
     modules = [importlib.import_module(f"{__package__}.{name}") for name in sorted(names)]
     return sorted(modules, key=lambda module: module.ORDER)
 
@@ -138,7 +143,8 @@ def _escape(text: str) -> str:
         ("\\", r"\textbackslash "), ("&", r"\&"), ("%", r"\%"), ("$", r"\$"), ("#", r"\#"),
         ("_", r"\_"), ("{", r"\{"), ("}", r"\}"), ("~", r"\textasciitilde "), ("^", r"\^{}"),
         ("∞", r"$\infty$"), ("\N{EN DASH}", "--"), ("<", "$<$"), (">", "$>$"),
-        ("\N{THIN SPACE}", r"\,"),
+        ("\N{THIN SPACE}", r"\,"), ("\N{NARROW NO-BREAK SPACE}", r"\,"),
+        ("\N{NO-BREAK SPACE}", "~"),
     ):  # fmt: skip
         text = text.replace(plain, latex)
     return text
