@@ -8,7 +8,7 @@ PYTHONS := $(PYTHON) python3 python3.13 python3.12 python3.11 python
 
 .PHONY: help
 help: ## list the targets
-	@grep -hE '^[a-z-]+:.*## ' Makefile | sed 's/:.*## /\t/' | awk -F '\t' '{printf "make %-9s %s\n", $$1, $$2}'
+	@grep -hE '^[a-z-]+:.*## ' Makefile | sed 's/:.*## /\t/' | awk -F '\t' '{printf "make %-11s %s\n", $$1, $$2}'
 
 # These give computing times, or take both cores, so they run alone; the others two at a time.
 TIMED := table1 drives drives_enclosed s04_drives s04_table1 m22 m22_concave
@@ -49,6 +49,10 @@ check: $(VENV)/ready ## lint, check formats, types and the borders between layer
 .PHONY: bench
 bench: $(VENV)/ready ## measure against rivals and the paper; ratios, into outputs/bench
 	@$(BIN)/python -m benchmarks --output "$(OUTPUT)/bench"
+
+.PHONY: bench-quick
+bench-quick: $(VENV)/ready ## check that the rivals agree; no figures, into outputs/bench-quick
+	@$(BIN)/python -m benchmarks --output "$(OUTPUT)/bench-quick" --quick
 
 .PHONY: report
 report: $(VENV)/ready ## build the report from whatever runs are there
