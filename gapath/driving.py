@@ -3,7 +3,8 @@
 import time
 from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import NamedTuple
+from functools import cached_property
+from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,10 +12,10 @@ from numpy.typing import NDArray
 from gapath.errors import require
 from gapath.grid import OBSTACLE, Field, GridMap
 from gapath.kernels.field_of_view import HEADING_X, HEADING_Y, heading_of
-from gapath.kernels.fitness import cuts_corner
-from gapath.known_map import KnownMap
-from gapath.navigation import Decision, Mode, Navigator, Query
-from gapath.problem import CornerCutting, Problem
+from gapath.kernels.fitness import ALLOW, cuts_corner
+from gapath.known_map import KnownMap, Looks
+from gapath.navigation import Decision, Following, Mode, Navigator, Query
+from gapath.problem import Problem
 from gapath.rng import Stream, stream
 from gapath.world import Changes, World
 
@@ -65,14 +66,28 @@ class Frame(NamedTuple):
     heading: int
     """Where it looked, 0 to 7."""
     decision: Decision | None
-    """What the navigator wanted; None for the first look."""
+    """What the navigator wanted, without states where it had decided so before; None for the
+    first look."""
     news: NDArray[np.int64]
     """(n,) flat indices of the fields that it saw for the first time or changed; in the first
     frame also of the obstacles that it knew before."""
     entries: NDArray[np.int64]
     """(n,) their table entries."""
     seconds: float
-    """Wall time of the step."""
+    """Wall time of the step; steps that were decided together share theirs equally."""
+
+
+class Leg(NamedTuple):
+    """What came of one decision: a step, or several along a path."""
+
+    decision: Decision | None
+    """None for the first look."""
+    looks: Looks
+    """One for each step."""
+    passed: tuple[Field, ...]
+    """The robot's field after each step but for a last one that it could not make."""
+    seconds: float
+    """Wall time of deciding and looking."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,15 +98,39 @@ class Drive:
     ----------
     outcome : Outcome
         How it ended.
-    frames : list of Frame
-        The first look, then one frame a step.
+    legs : list of Leg
+        The first look, then one leg a decision.
     compute_time_s : float
         Wall time of looking and deciding, in seconds.
     """
 
     outcome: Outcome
-    frames: list[Frame] = field(repr=False)
+    legs: list[Leg] = field(repr=False)
     compute_time_s: float
+
+    @cached_property
+    def frames(self) -> list[Frame]:
+        """The first look, then one frame a step."""
+        frames: list[Frame] = []
+        (place,) = self.legs[0].passed
+        for decision, looks, passed, seconds in self.legs:
+            begin = 0
+            for i, (heading, end) in enumerate(zip(looks.headings, looks.ends, strict=True)):
+                now = decision if i == 0 else _gone_on(decision, i, passed)
+                place = passed[i] if i < len(passed) else place
+                share = seconds / len(looks.ends)
+                news, entries = looks.news[:, begin:end]
+                frames.append(Frame(place, heading, now, news, entries, share))
+                begin = end
+        return frames
+
+
+def _gone_on(decision: Decision | None, i: int, passed: tuple[Field, ...]) -> Decision:
+    """Give what the navigator wanted i fields after it had decided to follow a path."""
+    assert decision is not None and decision.path is not None
+    rest, past = decision.path[i:], decision.past + passed[:i]
+    place = (int(rest[1, 0]), int(rest[1, 1]))
+    return Decision(place, Mode.EXPLORE, None, None, (), rest, past)
 
 
 def drive(
@@ -134,21 +173,27 @@ def drive(
     start, target = problem.start, problem.target
     world = World(problem.map, changes, (start, target), seed, trial)
     known = KnownMap(problem.map, start, target, unknown_weight, before)
+    sees = (sensor.range, sensor.occlusion)
     rule = int(problem.corner_cutting)
     place, mode = start, Mode.EXPLORE
     heading = int(heading_of(target[0] - start[0], target[1] - start[1]))
 
     begin = last = time.perf_counter()
-    news, entries = known.look(world.table, place, heading, sensor.range, sensor.occlusion)
+    looks = known.look(world.table, place, heading, *sees)
     query = Query(known, start, target, problem.corner_cutting)
     state = navigator.begin(query)
     now = time.perf_counter()
-    if before is not None:  # the first frame tells all that is known
-        news = np.union1d(np.flatnonzero(before.obstacles), news)
+    if before is not None:  # the first leg tells all that is known
+        news = np.union1d(np.flatnonzero(before.obstacles), looks.news[0])
         entries = known.table.ravel()[news].astype(np.int64)
-    frames = [Frame(place, heading, None, news, entries, now - last)]
-    outcome = Outcome.OVERRAN
-    for step in range(step_limit + 1):
+        looks = Looks(looks.headings, [len(news)], np.stack([news, entries]))
+    legs = [Leg(None, looks, (place,), now - last)]
+    step = 0
+
+    def streams(part: int, index: int) -> Stream:
+        return stream(seed, trial, (step + 1) << 16 | part << 8 | index)
+
+    while True:
         if place == target:
             outcome = Outcome.REACHED
             break
@@ -156,29 +201,35 @@ def drive(
             outcome = Outcome.RETURNED
             break
         if step == step_limit:
+            outcome = Outcome.OVERRAN
             break
         last = time.perf_counter()
         world.advance(step, place)
-
-        def streams(part: int, index: int, step: int = step) -> Stream:
-            return stream(seed, trial, (step + 1) << 16 | part << 8 | index)
-
-        decision = navigator.step(state, query, news, streams)
-        mode = decision.mode
-        dx, dy = decision.place[0] - place[0], decision.place[1] - place[1]
-        if dx or dy:
-            heading = HEADINGS[dx, dy]
-        news, entries = known.look(world.table, place, heading, sensor.range, sensor.occlusion)
-        u, v = decision.place
-        # the sensor has shown what blocks the step: the next decision knows it
-        blocked = world.table[v, u] >= OBSTACLE or (
-            rule != CornerCutting.ALLOW and cuts_corner(world.table, *place, u, v, rule)
-        )
-        if (dx or dy) and not blocked:
-            place, state = decision.place, decision.moved
-            query = Query(known, place, target, query.corner_cutting)
+        decision = navigator.step(state, query, looks.news[0], streams)
+        mode, path = decision.mode, decision.path
+        fields = min(decision.fields, step_limit - step)
+        if fields > 1 and path is not None and not changes.every:
+            looks = known.follow(world.table, path, fields, rule, *sees)
+            ahead = tuple((x, y) for x, y in path[1 : len(looks.ends) + 1].tolist())
         else:
-            state = decision.stood
-        now = time.perf_counter()
-        frames.append(Frame(place, heading, decision, news, entries, now - last))
-    return Drive(outcome, frames, time.perf_counter() - begin)
+            dx, dy = decision.place[0] - place[0], decision.place[1] - place[1]
+            if dx or dy:
+                heading = HEADINGS[dx, dy]
+            looks = known.look(world.table, place, heading, *sees)
+            ahead = (decision.place,)
+        heading = looks.headings[-1]
+        # the sensor has shown what blocks the last step: the next decision knows it
+        (x, y), (u, v) = ahead[-2] if len(ahead) > 1 else place, ahead[-1]
+        blocked = world.table[v, u] >= OBSTACLE or (
+            rule != ALLOW and cuts_corner(world.table, x, y, u, v, rule)
+        )
+        passed = ahead[:-1] if blocked or (x, y) == (u, v) else ahead
+        state = decision.moved if passed else decision.stood
+        if passed:
+            place = passed[-1]
+            query = Query(known, place, target, problem.corner_cutting)
+        if len(passed) > 1:
+            state = cast(Following, state).further(passed[1:])
+        step += len(ahead)
+        legs.append(Leg(decision, looks, passed, time.perf_counter() - last))
+    return Drive(outcome, legs, time.perf_counter() - begin)

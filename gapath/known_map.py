@@ -1,10 +1,23 @@
 """What the robot knows: unknown fields count as free (KG18 Sec. 3.12)."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from gapath.grid import OBSTACLE, SCALE, Field, GridMap, Table
-from gapath.kernels.field_of_view import sense
+from gapath.kernels.field_of_view import follow, sense
+
+
+class Looks(NamedTuple):
+    """What one look showed, or several on the way along a path."""
+
+    headings: list[int]
+    """Where the robot looked, each 0 to 7 (`gapath.kernels.field_of_view`)."""
+    ends: list[int]
+    """How many news there were after each look."""
+    news: NDArray[np.int64]
+    """(2, n) flat indices of the fields that are new or have changed, and their table entries."""
 
 
 class KnownMap:
@@ -31,14 +44,15 @@ class KnownMap:
         before: GridMap | None = None,
     ) -> None:
         unknown = int(unknown_weight * SCALE + 0.5)
-        self.table: Table = np.full((world.rows, world.cols), unknown, dtype=np.int32)
+        self._table: Table = np.full((world.rows, world.cols), unknown, dtype=np.int32)
         self.seen: NDArray[np.bool_] = np.zeros((world.rows, world.cols), dtype=np.bool_)
         if before is not None:
             blocked = before.table >= OBSTACLE
-            self.table[blocked] = OBSTACLE
+            self._table[blocked] = OBSTACLE
         for x, y in (start, target):
-            self.table[y, x] = world.table[y, x]
+            self._table[y, x] = world.table[y, x]
             self.seen[y, x] = True
+        self.table = _read_only(self._table)
         self._ends = (start, target)
         self._resolution = world.resolution
         self._least = np.array([unknown], dtype=np.int64)
@@ -74,9 +88,7 @@ class KnownMap:
         """Give a table entry that bounds the weights of fields between start and target."""
         return 0 if self._start_may_shorten and start not in self._ends else int(self._least[0])
 
-    def look(
-        self, world: Table, place: Field, heading: int, layers: int, occlusion: bool
-    ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    def look(self, world: Table, place: Field, heading: int, layers: int, occlusion: bool) -> Looks:
         """Take over what the robot sees, in one call of a kernel.
 
         Parameters
@@ -94,25 +106,73 @@ class KnownMap:
 
         Returns
         -------
-        indices, entries : (n,) int64
-            Flat indices of the fields that are new or have changed, and their table entries.
+        Looks
+            What it showed.
         """
         news = np.empty((2, (layers + 1) ** 2), dtype=np.int64)
-        count = sense(
-            world, self.table, self.seen, *place, heading, layers, occlusion, news, self._least
+        state = (self._table, self.seen)
+        count = sense(world, *state, *place, heading, layers, occlusion, news, 0, self._least)
+        return Looks([heading], [count], news[:, :count])
+
+    def follow(
+        self,
+        world: Table,
+        path: NDArray[np.int32],
+        fields: int,
+        rule: int,
+        layers: int,
+        occlusion: bool,
+    ) -> Looks:
+        """Take over what the robot sees on its way along a path, in one call of a kernel.
+
+        It looks before each step, and stops when it sees an obstacle on the path.
+
+        Parameters
+        ----------
+        world : (rows, cols) int32
+            The true map, which must not change meanwhile.
+        path : (n, 2) int32
+            Fields as (x, y), the robot's own first.
+        fields : int
+            Most steps, fewer than n.
+        rule : int
+            Corner-cutting rule.
+        layers, occlusion
+            As of `look`.
+
+        Returns
+        -------
+        Looks
+            One for each step; all steps were made but for the last, which may be blocked.
+        """
+        most = min(fields * (layers + 1) ** 2, world.size)  # no field is news twice
+        news = np.empty((2, most), dtype=np.int64)
+        told = np.empty((2, fields), dtype=np.int64)
+        state = (self._table, self.seen)
+        count = follow(
+            world, *state, path, fields, rule, layers, occlusion, news, told, self._least
         )
-        return news[0, :count], news[1, :count]
+        headings, ends = told[:, :count].tolist()
+        return Looks(headings, ends, news[:, : ends[-1]])
 
     def dearer(self, places: tuple[Field, ...], penalty: float) -> "KnownMap":
         """Give a copy on which some fields cost more."""
         copy = object.__new__(KnownMap)
         copy.__dict__.update(self.__dict__)
-        copy.table = self.table.copy()
+        copy._table = self.table.copy()
         rows, cols = [y for _, y in places], [x for x, _ in places]
         before = self.table[rows, cols].astype(np.int64)
         after = np.minimum(before + int(penalty * SCALE), OBSTACLE - 1)
-        copy.table[rows, cols] = np.where(before >= OBSTACLE, OBSTACLE, after)
+        copy._table[rows, cols] = np.where(before >= OBSTACLE, OBSTACLE, after)
+        copy.table = _read_only(copy._table)
         return copy
+
+
+def _read_only(table: Table) -> Table:
+    """Give a view of the type that `GridMap.table` has: kernels are compiled once for both."""
+    view = table.view()
+    view.setflags(write=False)
+    return view
 
 
 def _lies_between(start: Field, target: Field, rows: int, cols: int) -> bool:

@@ -53,6 +53,13 @@ class Call:
     """Whether its path became the current one."""
 
 
+class Following(Protocol):
+    """State of a navigator whose robot follows a path."""
+
+    def further(self, fields: tuple[Field, ...]) -> "Following":
+        """Give the state after these next fields of the path were passed."""
+
+
 class Decision(NamedTuple):
     """What a navigator wants to do in a step."""
 
@@ -70,6 +77,9 @@ class Decision(NamedTuple):
     """The current path from the robot's field on, (n, 2) int32; None if it has none."""
     past: tuple[Field, ...] = ()
     """The way back, oldest field first, the robot's own last."""
+    fields: int = 1
+    """How many fields of the path to pass before the next decision; that comes sooner if an
+    obstacle turns up on the path. If more than one, `moved` is `Following`."""
 
 
 @runtime_checkable
@@ -109,7 +119,7 @@ class Navigator(Protocol):
         query : Query
             The robot's field, the target, and what is known now.
         news : (n,) int64
-            Flat indices of the fields of the known map that changed since the last step.
+            Flat indices of the fields of the known map that changed since the last decision.
         streams : callable
             Random streams, by part and index.
 

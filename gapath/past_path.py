@@ -62,14 +62,18 @@ class Track:
         """Take a path that begins in the robot's field."""
         return replace(self, path=path, at=0, returning=False)
 
-    def go_on(self, calls: tuple[Call, ...] = ()) -> Decision:
-        """Go to the next field of the current path."""
+    def further(self, fields: tuple[Field, ...]) -> "Track":
+        """Pass the next fields of the current path."""
+        return replace(self, at=self.at + len(fields), past=self.past + fields)
+
+    def go_on(self, calls: tuple[Call, ...] = (), to_end: bool = False) -> Decision:
+        """Go to the next field of the current path, or to its end while it is free."""
         assert self.path is not None
         rest = self.path[self.at :]
         place = (int(rest[1, 0]), int(rest[1, 1]))
-        moved = replace(self, at=self.at + 1, past=(*self.past, place))
         mode = Mode.REPLAN if calls else Mode.EXPLORE
-        return Decision(place, mode, moved, self, calls, rest, self.past)
+        fields = len(rest) - 1 if to_end else 1
+        return Decision(place, mode, self.further((place,)), self, calls, rest, self.past, fields)
 
     def go_back(self, calls: tuple[Call, ...] = ()) -> Decision:
         """Go back to the field before; at the start, stand."""

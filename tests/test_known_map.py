@@ -84,7 +84,9 @@ def test_dearer_is_a_copy():
     assert copy.table[1, 1] == 3.5 * SCALE
     assert (known.table == SCALE // 2).sum() == 16
     assert copy.least_weight((0, 0), (3, 3)) == SCALE // 2
-    known.table[2, 2] = OBSTACLE  # it appeared behind the robot
+    appeared = np.full((4, 4), 0.5)
+    appeared[2, 2] = 1.0  # behind the robot
+    known.look(GridMap("w", appeared).table, (0, 0), 1, 3, False)
     assert known.dearer(((2, 2),), 3.0).is_obstacle((2, 2))
 
 

@@ -70,6 +70,7 @@ def sense(
     layers: int,
     occlusion: bool,
     news: NDArray[np.int64],
+    count: int,
     least: NDArray[np.int64],
 ) -> int:
     """Look in a direction and take over what is seen into the known map.
@@ -90,21 +91,22 @@ def sense(
         Range of the sensor: layers 0 to this one.
     occlusion : bool
         An obstacle hides what lies behind it on a straight line.
-    news : (2, (layers + 1)**2) int64
-        Overwritten with the flat indices of fields seen for the first time or changed, and
-        their table entries.
+    news : (2, n) int64
+        Overwritten from `count` on with the flat indices of fields seen for the first time or
+        changed, at most (layers + 1)**2, and their table entries.
+    count : int
+        How many news there are already.
     least : (1,) int64
         Lowered to the least of these entries.
 
     Returns
     -------
     int
-        How many of them.
+        How many news there are now.
     """
     rows, cols = true_table.shape
     forward_x, forward_y = HEADING_X[heading], HEADING_Y[heading]
     diagonal = forward_x != 0 and forward_y != 0
-    count = 0
     for layer in range(layers + 1):
         for i in range(-layer, layer + 1):
             if diagonal:
@@ -161,3 +163,52 @@ def remaining_cost(table: NDArray[np.int32], path: NDArray[np.int32], first: int
             if cuts_corner(table, x0, y0, x1, y1, rule):
                 return -1
     return total
+
+
+@kernel
+def follow(
+    true_table: NDArray[np.int32],
+    known_table: NDArray[np.int32],
+    seen: NDArray[np.bool_],
+    path: NDArray[np.int32],
+    fields: int,
+    rule: int,
+    layers: int,
+    occlusion: bool,
+    news: NDArray[np.int64],
+    looks: NDArray[np.int64],
+    least: NDArray[np.int64],
+) -> int:
+    """Go along a path, looking ahead before each step, until an obstacle is seen on it.
+
+    Parameters
+    ----------
+    true_table, known_table, seen, layers, occlusion, least
+        As of `sense`.
+    path : (n, 2) int32
+        Fields as (x, y), the robot's own first.
+    fields : int
+        Most steps, fewer than n.
+    rule : int
+        Corner-cutting rule.
+    news : (2, m) int64
+        As of `sense`, look by look.
+    looks : (2, fields) int64
+        Overwritten with the heading of each look, and how many news there are after it.
+
+    Returns
+    -------
+    int
+        Number of looks. All steps were made but for the last, which may be blocked.
+    """
+    count = 0
+    for i in range(fields):
+        x, y = np.int64(path[i, 0]), np.int64(path[i, 1])
+        heading = heading_of(path[i + 1, 0] - x, path[i + 1, 1] - y)
+        count = sense(
+            true_table, known_table, seen, x, y, heading, layers, occlusion, news, count, least
+        )
+        looks[0, i], looks[1, i] = heading, count
+        if remaining_cost(known_table, path, i, rule) < 0:
+            return i + 1
+    return fields

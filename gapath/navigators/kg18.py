@@ -40,6 +40,11 @@ class State(NamedTuple):
     walked_back: tuple[Field, ...] = ()
     """Fields left since return mode began."""
 
+    def further(self, fields: tuple[Field, ...]) -> "State":
+        """Pass the next fields of the current path."""
+        at, passed = self.at + len(fields), self.passed + len(fields)
+        return State(self.mode, self.path, at, self.past + fields, passed)
+
 
 @dataclass(frozen=True)
 class Navigator:
@@ -170,14 +175,16 @@ class Navigator:
         return self._advance(adopted, mode, calls)
 
     def _advance(self, state: State, mode: Mode, calls: tuple[Call, ...]) -> Decision:
-        path = state.path
+        """Go on along the path, as far as where B is due."""
+        path, past = state.path, state.past
         assert path is not None
         rest = path[state.at :]
         if len(rest) < 2:
-            return Decision(state.past[-1], mode, state, state, calls, rest, state.past)
+            return Decision(past[-1], mode, state, state, calls, rest, past)
         place = (int(rest[1, 0]), int(rest[1, 1]))
-        moved = State(state.mode, path, state.at + 1, (*state.past, place), state.passed + 1)
-        return Decision(place, mode, moved, state, calls, rest, state.past)
+        due = self.explore_interval - state.passed % self.explore_interval
+        fields = min(due, len(rest) - 1)
+        return Decision(place, mode, state.further((place,)), state, calls, rest, past, fields)
 
     def _draw_due(self, streams: StreamOf) -> int:
         least, most = self.retreat_interval

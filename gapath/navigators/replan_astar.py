@@ -34,7 +34,9 @@ class Navigator:
         """
         table, rule = query.map.table, int(query.corner_cutting)
         if state.path is not None and remaining_cost(table, state.path, state.at, rule) >= 0:
-            return state.go_on()
+            return state.go_on(to_end=True)
         plan = shortest_path(query)
         calls = (Call("A" if state.returning else "C", 0, plan, plan.feasible),)
-        return state.adopt(plan.path).go_on(calls) if plan.feasible else state.go_back(calls)
+        if not plan.feasible:
+            return state.go_back(calls)
+        return state.adopt(plan.path).go_on(calls, to_end=True)

@@ -39,10 +39,10 @@ class Navigator:
         table, rule = query.map.table, int(query.corner_cutting)
         free = state.path is not None and remaining_cost(table, state.path, state.at, rule) >= 0
         if free and state.memory:
-            return state.go_on()
+            return state.go_on(to_end=True)
         if line_key(table, *query.start, *query.target, rule) < ONE_OBSTACLE:
             line = polyline(np.array([query.start, query.target], dtype=np.int32))
-            return replace(state, memory=True).adopt(line).go_on()
+            return replace(state, memory=True).adopt(line).go_on(to_end=True)
         if free:
             return state.go_on()
         plan = shortest_path(query)

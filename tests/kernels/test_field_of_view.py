@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from strategies import RULES, weights
 
 from gapath.grid import OBSTACLE, GridMap
-from gapath.kernels.field_of_view import heading_of, remaining_cost, sense
+from gapath.kernels.field_of_view import follow, heading_of, remaining_cost, sense
 
 
 def see(table, place, heading, layers, occlusion):
@@ -19,7 +19,7 @@ def see(table, place, heading, layers, occlusion):
     known = np.full(table.shape, -1, dtype=np.int32)
     seen = np.zeros(table.shape, dtype=np.bool_)
     news, least = np.empty((2, (layers + 1) ** 2), dtype=np.int64), np.array([1 << 30])
-    count = sense(table, known, seen, *place, heading, layers, occlusion, news, least)
+    count = sense(table, known, seen, *place, heading, layers, occlusion, news, 0, least)
     fields = {(int(i) % table.shape[1], int(i) // table.shape[1]) for i in news[0, :count]}
     assert len(fields) == count
     assert (news[1, :count] == table.ravel()[news[0, :count]]).all()
@@ -58,7 +58,7 @@ def test_only_what_is_new_or_changed_is_news():
     table = np.zeros((9, 9), dtype=np.int32)
     known, seen = np.zeros_like(table), np.zeros(table.shape, dtype=np.bool_)
     news, least = np.empty((2, 9), dtype=np.int64), np.array([OBSTACLE])
-    look = (known, seen, 4, 4, 0, 2, False, news, least)
+    look = (known, seen, 4, 4, 0, 2, False, news, 0, least)
     assert sense(table, *look) == 9
     assert sense(table, *look) == 0
     table[4, 6] = OBSTACLE
@@ -101,19 +101,56 @@ def test_headings_of_steps():
     assert [heading_of(*step) for step in naive_drive.HEADINGS] == list(range(8))
 
 
-@given(weights(), st.integers(0, 2), st.data())
-def test_remaining_cost(values, rule, data):
-    table = GridMap("random", values).table
-    rows, cols = table.shape
-    x, y = data.draw(st.integers(0, cols - 1)), data.draw(st.integers(0, rows - 1))
+@st.composite
+def walks(draw):
+    """A map and a path on it, which may lead over obstacles."""
+    values = draw(weights())
+    rows, cols = values.shape
+    x, y = draw(st.integers(0, cols - 1)), draw(st.integers(0, rows - 1))
     fields = [(x, y)]
-    for dx, dy in data.draw(st.lists(st.sampled_from(naive_drive.HEADINGS), max_size=12)):
+    for dx, dy in draw(st.lists(st.sampled_from(naive_drive.HEADINGS), max_size=12)):
         x, y = min(max(x + dx, 0), cols - 1), min(max(y + dy, 0), rows - 1)
         fields.append((x, y))
-    path = np.array(fields, dtype=np.int32)
+    return values, np.array(fields, dtype=np.int32)
+
+
+@given(walks(), st.integers(0, 3), st.data())
+def test_remaining_cost(walk, rule, data):
+    values, path = walk
+    table = GridMap("random", values).table
     first = data.draw(st.integers(0, len(path) - 1))
     entries = table[path[first:, 1], path[first:, 0]]
     steps = itertools.pairwise(map(tuple, path[first:].tolist()))
     cut = any(naive.forbidden(values, a, b, RULES[rule]) for a, b in steps)
     expected = -1 if cut or (entries == OBSTACLE).any() else entries.sum()
     assert remaining_cost(table, path, first, rule) == expected
+
+
+@given(walks(), st.integers(0, 3), st.integers(1, 4), st.booleans())
+def test_to_follow_a_path_is_to_look_step_by_step(walk, rule, layers, occlusion):
+    values, path = walk
+    table = GridMap("random", values).table
+    known = np.full(table.shape, OBSTACLE // 2, dtype=np.int32)
+    expected, told = known.copy(), []
+    for i, ((x, y), (u, v)) in enumerate(itertools.pairwise(path.tolist())):
+        heading = heading_of(u - x, v - y)
+        fields = naive_drive.view(table, (x, y), heading, layers, occlusion)
+        news = {y * table.shape[1] + x for x, y in fields if expected[y, x] != table[y, x]}
+        told.append((heading, news))
+        for x, y in fields:
+            expected[y, x] = table[y, x]
+        if remaining_cost(expected, path, i, rule) < 0:
+            break
+
+    steps = len(path) - 1
+    news, looks = np.empty((2, table.size), dtype=np.int64), np.empty((2, steps), dtype=np.int64)
+    seen, least = np.zeros(table.shape, dtype=np.bool_), np.array([1 << 30])
+    sees = (layers, occlusion, news, looks, least)
+    count = follow(table, known, seen, path, steps, rule, *sees)
+    ends = looks[1, :count].tolist()
+    shown = [set(news[0, a:b].tolist()) for a, b in zip([0, *ends], ends, strict=False)]
+    assert list(zip(looks[0, :count].tolist(), shown, strict=True)) == told
+    assert (known == expected).all()
+    if count:
+        assert (news[1, : ends[-1]] == table.ravel()[news[0, : ends[-1]]]).all()
+        assert least[0] == table[seen].min()

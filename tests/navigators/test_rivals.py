@@ -35,7 +35,7 @@ def test_dstar_lite_is_on_a_cheapest_path_in_every_step(problem):
     known = KnownMap(problem.map, problem.start, problem.target, 0.5)
     place = problem.start
     for frame, following in zip(driven.frames, driven.frames[1:], strict=False):
-        known.table.ravel()[frame.news] = frame.entries
+        known._table.ravel()[frame.news] = frame.entries
         known._least[0] = 0  # the news came by without `look`
         optimum = shortest_path(Query(known, place, problem.target, problem.corner_cutting))
         path = following.decision.path
@@ -58,7 +58,8 @@ def test_straight_astar_asks_only_at_the_wall_and_goes_straight_again_behind_it(
     places = [frame.place for frame in driven.frames]
     assert places[asked[0]][0] >= 25
     assert all(y == 12 for _, y in places[: asked[0] + 1])
-    behind = next(frame for frame in steps if frame.decision.moved.memory and frame.place[0] > 30)
+    straight = (leg for leg in driven.legs[1:] if leg.decision.moved.memory)
+    behind = next(leg for leg in straight if leg.passed[0][0] > 30)
     x, y = behind.decision.path[0]
     n = 57 - x
     line = [y + np.floor(i * (12 - y) / n + 0.5) for i in range(n + 1)]

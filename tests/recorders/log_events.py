@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from gapath.drive_events import drive_events
-from gapath.driving import Drive, Frame, Outcome
+from gapath.driving import Drive, Leg, Outcome
 from gapath.events import (
     Evolved,
     RunFinished,
@@ -18,6 +18,7 @@ from gapath.events import (
     TrialStarted,
 )
 from gapath.grid import GridMap
+from gapath.known_map import Looks
 from gapath.navigation import Call, Decision, Mode
 from gapath.problem import Evolution, Graph, Plan, PlanStatus, Problem
 from gapath.recorders import mcap
@@ -122,7 +123,7 @@ def _drive(grid, trial):
         *((tuple(way[i + 1]), explore, [], second[i:], [*trail[:2], *map(tuple, way[1 : i + 1])])
           for i in range(1, 3 + 3 * (trial == 0))),
     ]  # fmt: skip
-    place, seen, frames = (0, 0), set(), []
+    place, seen, legs = (0, 0), set(), []
     for heading, decision in enumerate([None, *decisions]):
         if decision is not None:
             target, mode, calls, path, past = decision
@@ -134,8 +135,9 @@ def _drive(grid, trial):
         news = np.array(sorted(near - seen), dtype=np.int64)
         seen |= near
         entries = grid.table.ravel()[news]
-        frames.append(Frame(place, heading % 8, decision, news, entries, 1e-5 * (heading + 1)))
-    return Drive(Outcome.REACHED if trial == 0 else Outcome.OVERRAN, frames, 1e-3)
+        looks = Looks([heading % 8], [len(news)], np.stack([news, entries]))
+        legs.append(Leg(decision, looks, (place,), 1e-5 * (heading + 1)))
+    return Drive(Outcome.REACHED if trial == 0 else Outcome.OVERRAN, legs, 1e-3)
 
 
 def logged(event):

@@ -86,7 +86,7 @@ def test_the_robot_and_its_trail(found, events):
 def test_the_outline_holds_what_the_sensor_sees(heading, layers):
     table, seen = np.zeros((15, 15), dtype=np.int32), np.zeros((15, 15), dtype=np.bool_)
     news, least = np.empty((2, (layers + 1) ** 2), dtype=np.int64), np.zeros(1, dtype=np.int64)
-    count = sense(table, table.copy(), seen, 7, 7, heading, layers, False, news, least)
+    count = sense(table, table.copy(), seen, 7, 7, heading, layers, False, news, 0, least)
     outline = _drive_scene._outline(layers, HEADING_X[heading], HEADING_Y[heading]) + 7.5
     y, x = np.mgrid[0:15, 0:15]
     inside = Polygon(outline).contains_points(np.stack([x.ravel(), y.ravel()], axis=1) + 0.5)
