@@ -33,7 +33,7 @@ from gapath.mapio.reconstructed import BASE_WEIGHT
 from gapath.problem import Plan, Problem
 from gapath.rng import stream
 
-SIZES = {(100, 50): 50, (400, 200): 30, (1000, 500): 10, (4000, 4000): 3}
+SIZES = {(100, 50): 50, (400, 200): 30, (1000, 500): 10, (4000, 4000): 5}
 """Columns and rows, multiples of the canonical map's, with the rounds that each is timed."""
 
 
