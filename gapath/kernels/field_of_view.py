@@ -159,8 +159,8 @@ def remaining_cost(table: NDArray[np.int32], path: NDArray[np.int32], first: int
             return -1
         total += found
         if rule != ALLOW and i > first:
-            x0, y0, x1, y1 = path[i - 1, 0], path[i - 1, 1], path[i, 0], path[i, 1]
-            if cuts_corner(table, x0, y0, x1, y1, rule):
+            x0, y0 = np.int64(path[i - 1, 0]), np.int64(path[i - 1, 1])
+            if cuts_corner(table, x0, y0, np.int64(path[i, 0]), np.int64(path[i, 1]), rule):
                 return -1
     return total
 
@@ -201,7 +201,7 @@ def follow(
     int
         Number of looks. All steps were made but for the last, which may be blocked.
     """
-    count = 0
+    count = np.int64(0)
     for i in range(fields):
         x, y = np.int64(path[i, 0]), np.int64(path[i, 1])
         heading = heading_of(path[i + 1, 0] - x, path[i + 1, 1] - y)

@@ -124,7 +124,13 @@ def search(
     """
     rows, cols = table.shape
     weights = table.ravel()
-    target_weight = np.int64(table[target_y, target_x])
+    # the estimate of what is left is linear in the straight and diagonal steps to the target
+    straight, diagonal, rest = np.int64(0), np.int64(0), np.int64(0)
+    if informed and by_length:
+        straight, diagonal = STRAIGHT, DIAGONAL
+    elif informed:  # the last step costs the target's weight
+        straight = diagonal = least
+        rest = table[target_y, target_x] - least
     end = np.uint64(target_y * cols + target_x)
 
     items = np.empty((256, 3), dtype=np.int64)
@@ -181,13 +187,10 @@ def search(
                 continue
             states[neighbour] = (through << STATE_BITS) + step + 2
             priority = through
-            if informed and neighbour != end:
+            if neighbour != end:
                 dx, dy = abs(target_x - x1), abs(target_y - y1)
                 longer, shorter = max(dx, dy), min(dx, dy)
-                if by_length:
-                    priority += (longer - shorter) * STRAIGHT + shorter * DIAGONAL
-                else:
-                    priority += (longer - 1) * least + target_weight
+                priority += (longer - shorter) * straight + shorter * diagonal + rest
             if spare == NONE:
                 item = used
                 used += 1
