@@ -93,11 +93,29 @@ def evolve(
     settings: NDArray[np.void],
     weights: NDArray[np.float64],
     rounding: NDArray[np.float64],
+    streams: NDArray[np.uint64],
+    history: NDArray[np.void],
+    chromosomes: NDArray[np.int32],
+    epochs: NDArray[np.int64],
+) -> None:
+    """Do what `gapath.kernels.evolution.evolve` does, by the rule ALLOW only."""
+    for run in range(streams.shape[0]):
+        epochs[run] = evolve_once(
+            table, ends, settings, weights, streams[run], history[run], chromosomes[run]
+        )
+
+
+@kernel
+def evolve_once(
+    table: NDArray[np.int32],
+    ends: tuple[int, int, int, int],
+    settings: NDArray[np.void],
+    weights: NDArray[np.float64],
     stream: Stream,
     history: NDArray[np.void],
     chromosomes: NDArray[np.int32],
 ) -> int:
-    """Run the genetic algorithm; arguments as `gapath.kernels.evolution.evolve`, rule ALLOW."""
+    """Run the genetic algorithm once; give the epochs taken."""
     rows, cols = table.shape
     setting = settings[0]
     size, genes = setting["population"], chromosomes.shape[1]

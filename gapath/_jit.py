@@ -11,11 +11,11 @@ import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 import numba
+from numba import extending
 from numba import types as types
-from numba.extending import intrinsic as intrinsic
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -82,3 +82,8 @@ def kernel(function: Callable[P, R]) -> Callable[P, R]:
         return numba.njit(function, cache=True, **_OPTIONS)  # type: ignore[no-any-return]
     finally:
         numba.config.CACHE_DIR = before  # type: ignore[attr-defined]
+
+
+def intrinsic(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Make a function of kernels out of one that gives its signature and its LLVM code."""
+    return extending.intrinsic(function)  # type: ignore[no-any-return]

@@ -14,16 +14,18 @@ from gapath.kernels.bspline import Basis
 from gapath.kernels.evaluation import evaluate, workspace
 from gapath.kernels.fitness import KEY_BITS, ONE_OBSTACLE
 from gapath.kernels.history import EPOCHS
+from gapath.kernels.lanes import CHROMOSOMES, GENES
 from gapath.kernels.population import (
     Ends,
     InitialPopulation,
-    cross,
+    Mixing,
     gene_limits,
     initialise,
-    mutate,
     rank_best,
+    vary,
+    width,
 )
-from gapath.rng import Stream, fill, high, low
+from gapath.rng import fill, high, low
 
 SETTINGS = np.dtype(
     [
@@ -52,33 +54,37 @@ class EvolutionResult(NamedTuple):
     """(E, 2 k) the best individual."""
 
 
-def run_evolution(
+def run_evolutions(
     table: NDArray[np.int32],
     ends: tuple[int, int, int, int],
     rule: int,
     settings: NDArray[np.void],
     basis: Basis,
-    stream: Stream,
-) -> EvolutionResult:
-    """Run the genetic algorithm and cut its history to the epochs that it took.
+    streams: NDArray[np.uint64],
+) -> list[EvolutionResult]:
+    """Run the genetic algorithm once for each stream and cut each history to its epochs.
 
     Parameters
     ----------
-    table, ends, rule, settings, stream
+    table, ends, rule, settings, streams
         As of `evolve`.
     basis : Basis
         Basis functions at w way points.
 
     Returns
     -------
-    EvolutionResult
-        Its last row is the answer.
+    list of EvolutionResult
+        The last row of each is the answer.
     """
-    most = int(settings["max_epochs"][0])
-    history = np.empty(most, dtype=EPOCHS)
-    chromosomes = np.empty((most, 2 * basis.weights.shape[1]), dtype=np.int32)
-    epochs = evolve(table, ends, rule, settings, *basis, stream, history, chromosomes)
-    return EvolutionResult(history[:epochs], chromosomes[:epochs])
+    runs, most = len(streams), int(settings["max_epochs"][0])
+    history = np.empty((runs, most), dtype=EPOCHS)
+    chromosomes = np.empty((runs, most, 2 * basis.weights.shape[1]), dtype=np.int32)
+    epochs = np.empty(runs, dtype=np.int64)
+    evolve(table, ends, rule, settings, *basis, streams, history, chromosomes, epochs)
+    return [
+        EvolutionResult(history[run, :taken], chromosomes[run, :taken])
+        for run, taken in enumerate(epochs.tolist())
+    ]
 
 
 def evaluations(population: int, epochs: int) -> int:
@@ -94,13 +100,14 @@ def evolve(
     settings: NDArray[np.void],
     weights: NDArray[np.float64],
     rounding: NDArray[np.float64],
-    stream: Stream,
+    streams: NDArray[np.uint64],
     history: NDArray[np.void],
     chromosomes: NDArray[np.int32],
-) -> int:
-    """Run the genetic algorithm.
+    epochs: NDArray[np.int64],
+) -> None:
+    """Run the genetic algorithm, once for each stream.
 
-    It returns one number, because an interrupt that comes while numba makes Python objects
+    It returns nothing, because an interrupt that comes while numba makes Python objects
     of a result kills the process.
 
     Parameters
@@ -115,82 +122,106 @@ def evolve(
         Settings; the population is at least 4.
     weights, rounding
         `gapath.kernels.bspline.Basis`.
-    stream : (4,) uint64
-        Random stream, advanced in place.
-    history : (max_epochs,) EPOCHS
+    streams : (n, 4) uint64
+        Random streams, one a run, advanced in place.
+    history : (n, max_epochs) EPOCHS
         Overwritten.
-    chromosomes : (max_epochs, 2 k) int32
+    chromosomes : (n, max_epochs, 2 k) int32
         Overwritten with each epoch's best individual.
-
-    Returns
-    -------
-    int
-        Epochs taken.
+    epochs : (n,) int64
+        Overwritten with the epochs taken.
     """
     rows, cols = table.shape
     setting = settings[0]
-    size, genes = setting["population"], chromosomes.shape[1]
-    mixing = setting["mixing_numerator"], setting["mixing_denominator"]
-    half = min(rows, cols) // 2
+    size, genes = setting["population"], chromosomes.shape[2]
     selected = size // 4
     basis = Basis(weights, rounding)
-
-    padded = (genes + 15) // 16 * 16  # whole vectors
-    population = np.zeros((size, padded), dtype=np.int32)
-    offspring = np.zeros((size, padded), dtype=np.int32)
-    limits = np.empty((2, padded), dtype=np.int32)
-    keys = np.empty(size, dtype=np.int64)
-    offspring_keys = np.empty(size, dtype=np.int64)
-    best = np.empty(selected, dtype=np.int64)
-    words = np.zeros(padded, dtype=np.uint64)
-    drawn = words[1 : genes - 2]  # one for the parents, one for each inner gene
-    memory = workspace(basis, size)
-
+    numerator, denominator = setting["mixing_numerator"], setting["mixing_denominator"]
+    mixing = Mixing(
+        numerator / denominator,
+        (denominator - numerator) / denominator,
+        0.5 + 0.25 / denominator,
+    )
     initial = InitialPopulation(
         setting["line_jitter"],
         setting["line_jitter_threshold"],
         setting["neighbourhood"],
         setting["margin"],
     )
+
+    columns = width(genes)
+    population = np.zeros((size + CHROMOSOMES, columns), dtype=np.int32)
+    offspring = np.zeros((size + CHROMOSOMES, columns), dtype=np.int32)
+    for i in range(size):
+        for g in range(2):
+            population[i, g] = offspring[i, g] = ends[g]
+            population[i, genes - 2 + g] = offspring[i, genes - 2 + g] = ends[2 + g]
+    keys = np.empty(size, dtype=np.int64)
+    offspring_keys = np.empty(size, dtype=np.int64)
+    best = np.empty(selected, dtype=np.int64)
+    memory = workspace(basis)
+    limits = np.empty((2, columns), dtype=np.int32)
     gene_limits(limits, Ends(*ends), genes, rows, cols, setting["clip_to_map"])
-    first = np.empty(size * (genes - 4), dtype=np.uint64)
-    fill(stream, first)
-    initialise(population[:, :genes], Ends(*ends), rows, cols, limits, initial, first)
-    evaluated = 0  # individuals before this one carry their key over
-    epoch = 0
-    while True:
-        evaluate(table, population[evaluated:], basis, rule, keys[evaluated:], memory)
-        rank_best(keys, best)
+    half = min(rows, cols) // 2  # KG18 Sec. 3.7: a gene changes by at most half the smaller side
+    changes = np.empty((2, columns), dtype=np.int32)
+    changes[0], changes[1] = 2 * half + 1, half
+    first = np.zeros(size * (genes - 4) + GENES, dtype=np.uint64)
+    words = np.zeros(columns, dtype=np.uint64)
+    drawn = words[: genes - 3]  # one for the parents, one for each inner gene
 
-        obstacle_sum = np.int64(0)
-        cost_sum = np.int64(0)
-        for i in range(size):
-            obstacle_sum += keys[i] >> KEY_BITS
-            cost_sum += keys[i] & (ONE_OBSTACLE - 1)
-        now = history[epoch]
-        now["key"] = keys[best[0]]
-        now["obstacle_sum"] = obstacle_sum
-        now["cost_sum"] = cost_sum
-        chromosomes[epoch] = population[best[0], :genes]
-        epoch += 1
+    for run in range(streams.shape[0]):
+        stream = streams[run]
+        fill(stream, first[:-GENES])
+        initialise(population, size, Ends(*ends), rows, cols, limits, initial, first)
+        evaluated = np.int64(0)  # individuals before this one carry their key over
+        epoch = 0
+        while True:
+            evaluate(table, population, evaluated, size, basis, rule, keys, memory)
+            rank_best(keys, best)
 
-        # KG18 Sec. 3.8: a feasible path ends it, never before min_epochs
-        feasible = keys[best[0]] < ONE_OBSTACLE
-        if (feasible and epoch >= setting["min_epochs"]) or epoch == setting["max_epochs"]:
-            break
+            obstacle_sum = np.int64(0)
+            cost_sum = np.int64(0)
+            for i in range(size):
+                obstacle_sum += keys[i] >> KEY_BITS
+                cost_sum += keys[i] & (ONE_OBSTACLE - 1)
+            now = history[run, epoch]
+            now["key"] = keys[best[0]]
+            now["obstacle_sum"] = obstacle_sum
+            now["cost_sum"] = cost_sum
+            for g in range(genes):
+                chromosomes[run, epoch, g] = population[best[0], g]
+            epoch += 1
 
-        for i in range(selected):
-            offspring[i] = population[best[i]]
-            offspring_keys[i] = keys[best[i]]
-        for i in range(selected, size):
-            fill(stream, drawn)
-            a, b = best[high(drawn[0], selected)], best[low(drawn[0], selected)]
-            if keys[a] >= keys[b]:  # on equal fitness B dominates, eq. (6)
-                a, b = b, a
-            cross(population[a], population[b], offspring[i], mixing)
-            mutate(offspring[i], limits, half, setting["mutation_threshold"], words)
-        population, offspring = offspring, population
-        keys, offspring_keys = offspring_keys, keys
-        evaluated = selected
+            # KG18 Sec. 3.8: a feasible path ends it, never before min_epochs
+            feasible = keys[best[0]] < ONE_OBSTACLE
+            if (feasible and epoch >= setting["min_epochs"]) or epoch == setting["max_epochs"]:
+                break
 
-    return epoch
+            for i in range(selected):
+                for g in range(columns):
+                    offspring[i, g] = population[best[i], g]
+                offspring_keys[i] = keys[best[i]]
+            for i in range(selected, size):
+                fill(stream, drawn)
+                a, b = best[high(drawn[0], selected)], best[low(drawn[0], selected)]
+                if keys[a] >= keys[b]:  # on equal fitness B dominates, eq. (6)
+                    a, b = b, a
+                vary(
+                    population,
+                    a,
+                    b,
+                    mixing,
+                    words,
+                    1,
+                    False,
+                    setting["mutation_threshold"],
+                    changes,
+                    limits,
+                    offspring,
+                    i,
+                    genes,
+                )
+            population, offspring = offspring, population
+            keys, offspring_keys = offspring_keys, keys
+            evaluated = selected
+        epochs[run] = epoch

@@ -1,133 +1,469 @@
-"""Thirty-two fields of a line at once: the only place that knows about lanes.
+"""Vectors of numbers in a processor's registers: the only place that knows about lanes.
 
-A processor adds and shifts sixteen integers as fast as one, but it reads fields from all over
-a map one by one; where it has an instruction that gathers them, that is often the slower way.
-So `store_fields` computes the places of the next fields side by side and stores them, and
-`read` fetches the entries one after another::
+A processor adds and multiplies sixteen numbers as fast as one. The functions here do so, as
+vectors of LLVM's intermediate language: with the lanes that the processor has, on any processor.
 
-    lane                   0       1       2       3     ...     31
-    (x, y) + lane * slope    25 fractional bits
-    whole fields        (0, 0)  (1, 0)  (2, 1)  (3, 1)   ...  (31, 13)   from the first one
-    stored as           base    base+1  base+cols+2      ...             at indices[at + lane]
+- `turn`, `place_way_points`, `join_way_points`: `CHROMOSOMES` chromosomes side by side. Every gene,
+  coordinate and number of a line has a row of memory, one lane a chromosome.
+- `store_fields`: the next `FIELDS` fields of a line side by side. Along its longer axis a line
+  takes one field a step, so only the other axis needs a fraction::
 
-A line that ends in between leaves places behind its end, which the next line overwrites.
-Without the JIT the same is done by the functions that follow, one lane after the other.
+      lane l         0       1       2       3       4
+      along          1       2       3       4       5     l + 1
+      across       0.7     1.1     1.5     1.9     2.3     1/2 + (l + 1) slope, here slope 0.4 and
+                                                           start at 0.3; what follows the point is
+                     0       1       1       1       2     cut off
+      place        base + (l + 1) * stride along + (across, cut off) * stride across
+
+  They go to memory one line after the other; what lies behind the end of a line is overwritten.
+- `sum_entries`: what stands in the table at those places, one entry after the other. Where a
+  processor has an instruction that gathers entries from all over a table, it is often slower.
+- `vary_genes`: `GENES` genes of a child side by side.
+
+Rounding down is done by shifting to positive numbers and cutting off, which every processor can.
 """
 
 from typing import Any
 
-import numpy as np
 from llvmlite import ir
-from numpy.typing import NDArray
 
-from gapath._jit import JIT, intrinsic, types
+from gapath._jit import intrinsic, types
+from gapath.kernels.raster import COORDINATE_LIMIT, SHIFT
 
-LANES = 32
+CHROMOSOMES, FIELDS, GENES = 16, 32, 8
+
+READ = 8
+"""`sum_entries` reads so many entries at a time: there must be room for so many places more."""
+
 FRACTION = 25
-"""Fractional bits: so many that `LANES` steps fit 31 bits with a sign. Rounded up, position
-and slope together lie at most LANES / 2**FRACTION too high, less than 1 / (2 n) for lines of
-n <= 2**18 fields: no field changes (`gapath.kernels.raster`)."""
+"""Fractional bits across: so many that `FIELDS` steps fit 31 bits with a sign. Rounded up, position
+and slope together lie at most (FIELDS + 1) / 2**FRACTION too high, less than 1 / (2 n) for lines
+of n <= 2**18 fields: no field changes (`gapath.kernels.raster`)."""
+
+EXCESS = 1.0 / 1024
+"""Lifts a slope above what its two roundings take off; less than one unit is left of it."""
+
+STEPS, ALONG, ACROSS, SLOPE, BASE, LINE = range(6)
+"""Rows of a line, and how many: steps, negative if it leaves the map; strides of the table along
+the longer and the other axis; slope across with `FRACTION` fractional bits; place of its start."""
+
+_I32, _I64, _F64 = ir.IntType(32), ir.IntType(64), ir.DoubleType()
 
 
+class _Vector:
+    """A vector as LLVM computes it, with the operators that the formulas below need."""
+
+    def __init__(self, builder: Any, value: Any) -> None:
+        self.builder, self.value, self.kind = builder, value, value.type
+
+    def _binary(self, real: str, whole: str, other: "_Vector | float") -> "_Vector":
+        name = real if self.kind.element == _F64 else whole
+        return _Vector(self.builder, getattr(self.builder, name)(self.value, self._like(other)))
+
+    def _like(self, other: "_Vector | float") -> Any:
+        if isinstance(other, _Vector):
+            return other.value
+        return ir.Constant(self.kind, [other] * self.kind.count)
+
+    def __add__(self, other: "_Vector | float") -> "_Vector":
+        return self._binary("fadd", "add", other)
+
+    def __sub__(self, other: "_Vector | float") -> "_Vector":
+        return self._binary("fsub", "sub", other)
+
+    def __mul__(self, other: "_Vector | float") -> "_Vector":
+        return self._binary("fmul", "mul", other)
+
+    def __rshift__(self, bits: int) -> "_Vector":
+        return self._binary("", "ashr", bits)
+
+    def __or__(self, other: "_Vector") -> "_Vector":
+        return self._binary("", "or_", other)
+
+    def __and__(self, other: float) -> "_Vector":
+        return self._binary("", "and_", other)
+
+    def __lt__(self, other: "_Vector | float") -> "_Vector":
+        return _Vector(self.builder, self.builder.icmp_signed("<", self.value, self._like(other)))
+
+    def outside(self, side: "_Vector") -> "_Vector":
+        """Tell whether it is negative or at least as large as a side."""
+        return _Vector(self.builder, self.builder.icmp_unsigned(">=", self.value, side.value))
+
+    def choose(self, one: "_Vector", other: "_Vector | float") -> "_Vector":
+        """Give one where this is true, the other where it is false."""
+        value = self.builder.select(self.value, one.value, one._like(other))
+        return _Vector(self.builder, value)
+
+    def negative(self) -> "_Vector":
+        return _Vector(self.builder, self.builder.sub(self._like(0), self.value))
+
+    def size(self) -> "_Vector":
+        return (self < 0).choose(self.negative(), self)
+
+    def real(self) -> "_Vector":
+        kind = ir.VectorType(_F64, self.kind.count)
+        return _Vector(self.builder, self.builder.sitofp(self.value, kind))
+
+    def whole(self) -> "_Vector":
+        """Cut off what follows the point."""
+        kind = ir.VectorType(_I32, self.kind.count)
+        return _Vector(self.builder, self.builder.fptosi(self.value, kind))
+
+    def short(self) -> "_Vector":
+        """Keep the lower 32 of 64 bits."""
+        kind = ir.VectorType(_I32, self.kind.count)
+        return _Vector(self.builder, self.builder.trunc(self.value, kind))
+
+    def divide(self, number: float) -> "_Vector":
+        """Divide a number by it."""
+        return _Vector(self.builder, self.builder.fdiv(self._like(number), self.value))
+
+
+class _Code:
+    """The code of one function: its arguments as numbers, vectors and memory."""
+
+    def __init__(self, context: Any, builder: Any, signature: Any, args: Any) -> None:
+        self.context, self.builder = context, builder
+        self.kinds, self.args = signature.args, args
+
+    def all_lanes(self, number: Any, lanes: int, kind: Any = _I32) -> _Vector:
+        """Copy a number, or the argument so numbered, into all lanes."""
+        number = self.args[number] if isinstance(number, int) else number
+        if kind == _I32 and number.type == _I64:
+            number = self.builder.trunc(number, _I32)
+        nothing = ir.Constant(ir.VectorType(kind, lanes), ir.Undefined)
+        first = self.builder.insert_element(nothing, number, _I32(0))
+        everywhere = ir.Constant(ir.VectorType(_I32, lanes), [0] * lanes)
+        return _Vector(self.builder, self.builder.shuffle_vector(first, nothing, everywhere))
+
+    def array(self, argument: int) -> Any:
+        return self.context.make_array(self.kinds[argument])(
+            self.context, self.builder, self.args[argument]
+        )
+
+    def pointer(self, argument: int, place: Any, kind: Any) -> Any:
+        """Point to what an array holds from a place on."""
+        data = self.builder.gep(self.array(argument).data, [place])
+        return self.builder.bitcast(data, ir.PointerType(kind))
+
+    def load(self, argument: int, place: Any, lanes: int, kind: Any = _I32) -> _Vector:
+        pointer = self.pointer(argument, place, ir.VectorType(kind, lanes))
+        return _Vector(self.builder, self.builder.load(pointer, align=4 if kind == _I32 else 8))
+
+    def store(self, value: _Vector, argument: int, place: Any) -> None:
+        pointer = self.pointer(argument, place, value.kind)
+        self.builder.store(value.value, pointer, align=4 if value.kind.element == _I32 else 8)
+
+    def row(self, number: Any, offset: int = 0) -> Any:
+        """Give the place of a row of `CHROMOSOMES` numbers."""
+        row = self.builder.add(number, _I64(offset))
+        return self.builder.mul(row, _I64(CHROMOSOMES))
+
+    def place(self, argument: int, row: Any, column: Any) -> Any:
+        """Give the place of an element of a matrix."""
+        width = self.builder.extract_value(self.array(argument).shape, 1)
+        return self.builder.add(self.builder.mul(row, width), column)
+
+    def done(self) -> Any:
+        return self.context.get_dummy_value()
+
+
+@intrinsic
+def turn(_: Any, chromosomes: Any, first: Any, column: Any, genes: Any) -> Any:
+    """Turn chromosomes, one a row, into genes, one a row.
+
+    Rows exchange numbers, lowest bit of the number of a lane first::
+
+        a0 a1 a2 a3      a0 b0 a2 b2      a0 b0 c0 d0
+        b0 b1 b2 b3      a1 b1 a3 b3      a1 b1 c1 d1
+        c0 c1 c2 c3  ->  c0 d0 c2 d2  ->  a2 b2 c2 d2
+        d0 d1 d2 d3      c1 d1 c3 d3      a3 b3 c3 d3
+
+    Parameters
+    ----------
+    chromosomes : (n, m) int32
+        Chromosomes with room behind them: n >= first + CHROMOSOMES, m >= column + CHROMOSOMES.
+    first, column : int
+        The first chromosome and its first gene; so many genes of so many are turned.
+    genes : (p,) int32
+        Rows `column` and those that follow are overwritten.
+    """
+
+    def code(*given: Any) -> Any:
+        c = _Code(*given)
+        n, shuffle = CHROMOSOMES, c.builder.shuffle_vector
+        first, column = c.args[1:3]
+        rows = []
+        for i in range(n):
+            row = c.builder.add(first, _I64(i))
+            rows.append(c.load(0, c.place(0, row, column), n).value)
+        for bit in (1, 2, 4, 8):
+            low = ir.Constant(rows[0].type, [j + (n - bit if j & bit else 0) for j in range(n)])
+            high = ir.Constant(rows[0].type, [j + (n if j & bit else bit) for j in range(n)])
+            for i in range(n):
+                if not i & bit:
+                    a, b = rows[i], rows[i + bit]
+                    rows[i], rows[i + bit] = shuffle(a, b, low), shuffle(a, b, high)
+        for i, row in enumerate(rows):
+            c.store(_Vector(c.builder, row), 3, c.row(column, i))
+        return c.done()
+
+    return types.void(chromosomes, types.int64, types.int64, genes), code
+
+
+@intrinsic
+def place_way_points(
+    _: Any, genes: Any, gene: Any, points: Any, point: Any, rounding: Any, a: Any, b: Any, c: Any
+) -> Any:
+    """Compute one coordinate of a way point: `gapath.kernels.bspline.way_point`.
+
+    Parameters
+    ----------
+    genes : (n,) int32
+        Genes, one a row.
+    gene : int
+        The row of the first that counts; the others are the second and the fourth behind it.
+    points : (m,) int32
+        Coordinates, one a row.
+    point : int
+        The row to overwrite.
+    rounding, a, b, c : float
+        What to add, and the weights of the three genes.
+    """
+
+    def code(*given: Any) -> Any:
+        c = _Code(*given)
+        shift = 2 * COORDINATE_LIMIT
+        total = c.all_lanes(4, CHROMOSOMES, _F64) + float(shift)
+        for k in range(3):
+            coordinate = c.load(0, c.row(c.args[1], 2 * k), CHROMOSOMES).real()
+            total += coordinate * c.all_lanes(5 + k, CHROMOSOMES, _F64)
+        c.store(total.whole() - shift, 2, c.row(c.args[3]))
+        return c.done()
+
+    reals = [types.float64] * 4
+    return types.void(genes, types.int64, points, types.int64, *reals), code
+
+
+@intrinsic
+def join_way_points(
+    _: Any, points: Any, j: Any, lines: Any, slopes: Any, rows: Any, cols: Any
+) -> Any:
+    """Describe the lines from one way point to the next.
+
+    Parameters
+    ----------
+    points : (n,) int32
+        Coordinates, one a row: x and y of a way point follow one another.
+    j : int
+        Number of the line and of the way point at its start.
+    lines : (m,) int32
+        `LINE` rows a line, overwritten.
+    slopes : (p,) float64
+        A row a line, overwritten with its slope across, in units of 1 / 2**SHIFT.
+    rows, cols : int
+        Size of the map.
+    """
+
+    def code(*given: Any) -> Any:
+        c = _Code(*given)
+        point = c.builder.mul(c.args[1], _I64(2))
+        line = c.builder.mul(c.args[1], _I64(LINE))
+        rows, cols = (c.all_lanes(k, CHROMOSOMES) for k in (4, 5))
+        x0, y0, x1, y1 = (c.load(0, c.row(point, k), CHROMOSOMES) for k in range(4))
+
+        dx, dy = x1 - x0, y1 - y0
+        tall = dx.size() < dy.size()
+        longer, other = tall.choose(dy, dx), tall.choose(dx, dy)
+        steps, stride = longer.size(), tall.choose(cols, 1)
+        leaves = x0.outside(cols) | y0.outside(rows) | x1.outside(cols) | y1.outside(rows)
+        slope = other.real() * (steps < 1).choose(steps + 1, steps).real().divide(2.0**SHIFT)
+        slope += EXCESS
+        shift = 2 << FRACTION
+        coarse = (slope * 2.0 ** (FRACTION - SHIFT) + float(shift)).whole() - (shift - 1)
+
+        c.store(slope, 3, c.row(c.args[1]))
+        c.store(leaves.choose(steps.negative(), steps), 2, c.row(line, STEPS))
+        c.store((longer < 0).choose(stride.negative(), stride), 2, c.row(line, ALONG))
+        c.store(cols + 1 - stride, 2, c.row(line, ACROSS))
+        c.store(coarse, 2, c.row(line, SLOPE))
+        c.store(y0 * cols + x0, 2, c.row(line, BASE))
+        return c.done()
+
+    return types.void(points, types.int64, lines, slopes, types.int64, types.int64), code
+
+
+@intrinsic
 def store_fields(
-    indices: NDArray[np.int32],
-    at: int,
-    base: int,
-    x: int,
-    y: int,
-    slope_x: int,
-    slope_y: int,
-    cols: int,
-) -> None:
-    """Store the places of the next fields of a line in the flattened table, `LANES` of them.
+    _: Any, indices: Any, at: Any, base: Any, along: Any, across: Any, part: Any, slope: Any
+) -> Any:
+    """Store the places of the next `FIELDS` fields of a line in the flattened table.
 
     Parameters
     ----------
     indices : (n,) int32
-        Overwritten from `at` on; n >= at + LANES.
+        Overwritten from `at` on; n >= at + FIELDS.
     at : int
         Where to store the first one.
     base : int
-        Place of the first field.
-    x, y : int
-        Position within the first field, `FRACTION` fractional bits.
-    slope_x, slope_y : int
-        From field to field.
-    cols : int
-        Fields in a row of the table.
+        Place of the field before the first.
+    along, across : int
+        Strides of the table along the line's longer and its other axis.
+    part : int
+        Position across within the field before, `FRACTION` fractional bits.
+    slope : int
+        Likewise, from field to field.
     """
-    for lane in range(LANES):
-        right, down = (x + lane * slope_x) >> FRACTION, (y + lane * slope_y) >> FRACTION
-        # what lies behind the end of a line may be anywhere
-        indices[at + lane] = np.int64(base + down * cols + right).astype(np.int32)
+
+    def code(*given: Any) -> Any:
+        c = _Code(*given)
+        base, along, across, part, slope = (c.all_lanes(k, FIELDS) for k in range(2, 7))
+        steps = ir.Constant(ir.VectorType(_I32, FIELDS), list(range(1, FIELDS + 1)))
+        step = _Vector(c.builder, steps)
+        places = base + along * step + (part + slope * step >> FRACTION) * across
+        c.store(places, 0, c.args[1])
+        return c.done()
+
+    return types.void(indices, *[types.int64] * 6), code
 
 
-def read(flat: NDArray[np.int32], index: int) -> int:
-    """Read one entry.
+@intrinsic
+def sum_entries(_: Any, flat: Any, indices: Any, count: Any) -> Any:
+    """Add up entries of the table.
+
+    Two places are read at once, as one number of 64 bits, and the entries go to two sums, which
+    need not wait for one another. An atomic load is a plain load to the processor, but the
+    compiler leaves it alone: it would otherwise put vectors together element by element.
 
     Parameters
     ----------
     flat : (n,) int32
         The flattened table.
-    index : int
-        From 0 to n - 1; not checked.
+    indices : (m,) int32
+        Places in it; m >= count + READ, those behind the last are overwritten.
+    count : int
+        How many to add up.
 
     Returns
     -------
     int
-        The entry.
+        The sum, if it is below 2**32.
     """
-    return int(flat[index])
+
+    def code(*given: Any) -> Any:
+        c = _Code(*given)
+        builder, count = c.builder, c.args[2]
+        # behind the last stands the first entry of the table, which is taken off again
+        c.store(_Vector(builder, ir.Constant(ir.VectorType(_I32, READ), [0] * READ)), 1, count)
+        before = builder.block
+        loop, after = builder.append_basic_block("read"), builder.append_basic_block("read_all")
+        builder.branch(loop)
+        builder.position_at_end(loop)
+        at, *begun = builder.phi(_I64), builder.phi(_I32), builder.phi(_I32)
+        sums = list(begun)
+        for k in range(READ // 2):
+            pair = builder.load(c.pointer(1, builder.add(at, _I64(2 * k)), _I64), align=4)
+            for place in (builder.and_(pair, _I64(2**32 - 1)), builder.lshr(pair, _I64(32))):
+                entry = builder.load_atomic(c.pointer(0, place, _I32), "monotonic", 4)
+                sums[k % 2] = builder.add(sums[k % 2], entry)
+        following = builder.add(at, _I64(READ))
+        for phi, start, end in zip(
+            (at, *begun), (_I64, _I32, _I32), (following, *sums), strict=True
+        ):
+            phi.add_incoming(start(0), before)
+            phi.add_incoming(end, loop)
+        builder.cbranch(builder.icmp_signed("<", following, count), loop, after)
+        builder.position_at_end(after)
+        more = builder.trunc(builder.sub(following, count), _I32)
+        extra = builder.mul(more, builder.load(c.pointer(0, _I64(0), _I32)))
+        return builder.zext(builder.sub(builder.add(*sums), extra), _I64)
+
+    return types.int64(flat, indices, types.int64), code
 
 
-_I32, _I64 = ir.IntType(32), ir.IntType(64)
-_VECTOR = ir.VectorType(_I32, LANES)
-
-
-def _vector(values: list[int]) -> Any:
-    return ir.Constant(_VECTOR, values)
-
-
-def _in_all_lanes(builder: Any, number: Any) -> Any:
-    nothing = ir.Constant(_VECTOR, ir.Undefined)
-    first = builder.insert_element(nothing, builder.trunc(number, _I32), _I32(0))
-    return builder.shuffle_vector(first, nothing, _vector([0] * LANES))
-
-
-def _store_fields(
-    _: Any, indices: Any, at: Any, base: Any, x: Any, y: Any, slope_x: Any, slope_y: Any, cols: Any
+@intrinsic
+def vary_genes(
+    _: Any,
+    parents: Any,
+    fitter: Any,
+    other: Any,
+    share: Any,
+    rest: Any,
+    rounding: Any,
+    words: Any,
+    word: Any,
+    half: Any,
+    threshold: Any,
+    changes: Any,
+    limits: Any,
+    children: Any,
+    child: Any,
+    gene: Any,
 ) -> Any:
-    """Give signature and code of `store_fields`."""
+    """Make the next `GENES` genes of a child: `gapath.kernels.population.vary_one_by_one`.
 
-    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        base, x, y, slope_x, slope_y, cols = (_in_all_lanes(builder, arg) for arg in args[2:])
-        lane, shift = _vector(list(range(LANES))), _vector([FRACTION] * LANES)
-        right = builder.ashr(builder.add(x, builder.mul(slope_x, lane)), shift)
-        down = builder.ashr(builder.add(y, builder.mul(slope_y, lane)), shift)
-        fields = builder.add(base, builder.add(builder.mul(down, cols), right))
-        data = context.make_array(signature.args[0])(context, builder, args[0]).data
-        first = builder.gep(data, [args[1]])
-        builder.store(fields, builder.bitcast(first, ir.PointerType(_VECTOR)), align=4)
-        return context.get_dummy_value()
-
-    return types.void(indices, *[types.int64] * 7), code
-
-
-def _read(_: Any, flat: Any, index: Any) -> Any:
-    """Give signature and code of `read`.
-
-    An atomic load is a plain load to the processor, but the compiler leaves it alone: it would
-    otherwise turn a loop of loads into vectors, put together element by element.
+    Parameters
+    ----------
+    parents, children : (n, m) int32
+        A chromosome a row; m >= gene + GENES.
+    fitter, other, child : int
+        Rows of the parents, and the row to overwrite.
+    share, rest, rounding : float
+        Shares of the parents, and what to add before rounding down.
+    words : (p,) uint64
+        Random words.
+    word : int
+        The one for the first gene; p >= word + GENES.
+    half : int
+        Bits to skip of a word: 0 or 32.
+    threshold : uint64
+        A gene changes if the upper half of its word is below.
+    changes : (2, m) int32
+        Values that a change has, and what the least is below 0.
+    limits : (2, m) int32
+        The least and the greatest value of each gene.
+    gene : int
+        The first gene.
     """
 
-    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        data = context.make_array(signature.args[0])(context, builder, args[0]).data
-        entry = builder.load_atomic(builder.gep(data, [args[1]]), "monotonic", 4)
-        return builder.sext(entry, _I64)
+    def code(*given: Any) -> Any:
+        c = _Code(*given)
+        gene, shift = c.args[14], 2 * COORDINATE_LIMIT
+        mixed = c.all_lanes(5, GENES, _F64) + float(shift)
+        for parent, share in ((1, 3), (2, 4)):
+            value = c.load(0, c.place(0, c.args[parent], gene), GENES).real()
+            mixed += value * c.all_lanes(share, GENES, _F64)
+        spans, lows, least, greatest = (
+            c.load(k, c.place(k, _I64(bound), gene), GENES) for k in (10, 11) for bound in (0, 1)
+        )
+        word = c.load(6, c.args[7], GENES, _I64)
+        mask = 2**32 - 1
+        wide = _Vector(c.builder, c.builder.zext(spans.value, word.kind))
+        upper = _Vector(c.builder, c.builder.lshr(word.value, word._like(32)))
+        drawn = _Vector(c.builder, c.builder.lshr(word.value, c.all_lanes(8, GENES, _I64).value))
+        drawn = (((drawn & mask) * wide) >> 32).short() - lows
+        happens = upper < c.all_lanes(9, GENES, _I64)
+        value = mixed.whole() - shift + happens.choose(drawn, 0)
+        value = (value < least).choose(least, value)
+        value = (greatest < value).choose(greatest, value)
+        c.store(value, 12, c.place(12, c.args[13], gene))
+        return c.done()
 
-    return types.int64(flat, types.int64), code
-
-
-if JIT:
-    store_fields = intrinsic(_store_fields)
-    read = intrinsic(_read)
+    whole, real = types.int64, types.float64
+    ints = [whole, whole]
+    signature = types.void(
+        parents,
+        *ints,
+        real,
+        real,
+        real,
+        words,
+        *ints,
+        types.uint64,
+        changes,
+        limits,
+        children,
+        *ints,
+    )
+    return signature, code

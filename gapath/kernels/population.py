@@ -1,7 +1,10 @@
-"""The operators of KG18's genetic algorithm (Secs 3.3, 3.5-3.7), one function each.
+"""The operators of KG18's genetic algorithm (Secs 3.3, 3.5-3.7).
 
 Each takes its random numbers as words drawn beforehand, one word for each gene, and one
 for each pair of parents: what is drawn never depends on what was drawn.
+
+Matrices have a chromosome a row, and `width` columns: what follows the last gene is there for
+whole vectors and means nothing.
 """
 
 from typing import NamedTuple
@@ -9,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath._jit import kernel
+from gapath._jit import JIT, kernel
+from gapath.kernels.lanes import GENES, vary_genes
 from gapath.kernels.raster import COORDINATE_LIMIT
 from gapath.rng import happens, high, low
 
@@ -71,8 +75,123 @@ def gene_limits(
 
 
 @kernel
+def width(genes: int) -> int:
+    """Give the columns of a matrix of chromosomes with so many genes: whole vectors of any kind."""
+    return (genes + GENES + 13) // 16 * 16
+
+
+class Mixing(NamedTuple):
+    """Arithmetical crossover (KG18 eq. (6)): D of the fitter parent, the rest of the other.
+
+    A multiple of 1 / d, d being D's denominator, is lifted by 1 / (4 d) before its floor is
+    taken, as the way points are (`gapath.kernels.bspline`): exact, rounded half up.
+    """
+
+    share: float
+    rest: float
+    rounding: float
+
+
+@kernel
+def vary_one_by_one(
+    parents: NDArray[np.int32],
+    fitter: int,
+    other: int,
+    mixing: Mixing,
+    words: NDArray[np.uint64],
+    first: int,
+    upper: bool,
+    threshold: np.uint64,
+    changes: NDArray[np.int32],
+    limits: NDArray[np.int32],
+    children: NDArray[np.int32],
+    child: int,
+    genes: int,
+) -> None:
+    """Make the inner genes of a child: cross two parents, and change genes at random.
+
+    Parameters
+    ----------
+    parents : (n, m) int32
+        A chromosome a row.
+    fitter, other : int
+        Rows of the parents.
+    mixing : Mixing
+        How they are crossed.
+    words : (p,) uint64
+        Random words; p >= first + 2 k - 4 + GENES.
+    first : int
+        The word of the first inner gene.
+    upper : bool
+        Draw the change from a word's upper half, not from its lower one.
+    threshold : uint64
+        The probability of a change, as `gapath.rng.probability_threshold` gives it; it is decided
+        by the upper half.
+    changes : (2, m) int32
+        For each gene: how many values the change has, and how far below 0 the least one is.
+    limits : (2, m) int32
+        `gene_limits`: a gene beyond moves to them.
+    children : (q, m) int32
+        Row `child` is overwritten, but for start and target.
+    child : int
+        The row.
+    genes : int
+        2 k.
+    """
+    for g in range(2, genes - 2):
+        mixed = mixing.share * parents[fitter, g] + mixing.rest * parents[other, g]
+        gene = np.int64(np.floor(mixed + mixing.rounding))
+        word = words[first + g - 2]
+        if happens(word, threshold):
+            values = np.int64(changes[0, g])
+            gene += (high(word, values) if upper else low(word, values)) - changes[1, g]
+        children[child, g] = min(max(gene, np.int64(limits[0, g])), np.int64(limits[1, g]))
+
+
+@kernel
+def _vary_side_by_side(
+    parents: NDArray[np.int32],
+    fitter: int,
+    other: int,
+    mixing: Mixing,
+    words: NDArray[np.uint64],
+    first: int,
+    upper: bool,
+    threshold: np.uint64,
+    changes: NDArray[np.int32],
+    limits: NDArray[np.int32],
+    children: NDArray[np.int32],
+    child: int,
+    genes: int,
+) -> None:
+    for g in range(2, genes - 2, GENES):
+        vary_genes(
+            parents,
+            fitter,
+            other,
+            mixing.share,
+            mixing.rest,
+            mixing.rounding,
+            words,
+            first + g - 2,
+            32 if upper else 0,
+            threshold,
+            changes,
+            limits,
+            children,
+            child,
+            g,
+        )
+
+
+vary = _vary_side_by_side if JIT else vary_one_by_one
+"""`vary_one_by_one`, but genes that follow one another at once."""
+
+
+@kernel
 def initialise(
     population: NDArray[np.int32],
+    size: int,
     ends: Ends,
     rows: int,
     cols: int,
@@ -88,48 +207,55 @@ def initialise(
 
     Parameters
     ----------
-    population : (P, 2 k) int32
-        Overwritten.
+    population : (n, m) int32
+        The first P rows are overwritten, but for start and target.
+    size : int
+        P.
     ends : Ends
         First and last control point of every individual.
     rows, cols : int
         Size of the map.
-    limits : (2, n) int32
+    limits : (2, m) int32
         `gene_limits`.
     settings : InitialPopulation
         Ranges and probability.
-    words : (P * (2 k - 4),) uint64
+    words : (P * (2 k - 4) + GENES,) uint64
         Random words, one for each inner gene.
     """
-    size, genes = population.shape
-    segments = genes // 2 - 1
+    inner = (words.shape[0] - GENES) // size
+    segments = inner // 2 + 1
     start = (ends.start_x, ends.start_y)
     target = (ends.target_x, ends.target_y)
     sides = (cols, rows)
-    line = np.empty(genes, dtype=np.int64)
-    for g in range(genes):
+    certain = np.uint64(1 << 32)
+    middles = np.zeros((3, limits.shape[1]), dtype=np.int32)  # what each part is a change of
+    changes = np.zeros((3, 2, limits.shape[1]), dtype=np.int32)
+    for g in range(2, inner + 2):
         axis = g % 2
         d = target[axis] - start[axis]
-        line[g] = start[axis] + (2 * (g // 2) * d + segments) // (2 * segments)
-    reach, jitter = settings.neighbourhood, settings.line_jitter
-    w = 0
+        margin = min(settings.margin, (sides[axis] - 1) // 2)
+        middles[0, g] = start[axis] + (2 * (g // 2) * d + segments) // (2 * segments)
+        middles[1, g] = start[axis]
+        changes[0, 0, g], changes[0, 1, g] = 2 * settings.line_jitter + 1, settings.line_jitter
+        changes[1, 0, g], changes[1, 1, g] = 2 * settings.neighbourhood + 1, settings.neighbourhood
+        changes[2, 0, g], changes[2, 1, g] = sides[axis] - 2 * margin, -margin
     for i in range(size):
         part = 3 * i // size
-        population[i] = line
-        for g in range(2, genes - 2):
-            axis = g % 2
-            word = words[w]
-            w += 1
-            if part == 0:
-                gene = line[g]
-                if happens(word, settings.line_jitter_threshold):
-                    gene += low(word, 2 * jitter + 1) - jitter
-            elif part == 1:
-                gene = start[axis] + high(word, 2 * reach + 1) - reach
-            else:
-                margin = min(settings.margin, (sides[axis] - 1) // 2)
-                gene = margin + high(word, sides[axis] - 2 * margin)
-            population[i, g] = min(max(gene, np.int64(limits[0, g])), np.int64(limits[1, g]))
+        vary(
+            middles,
+            part,
+            part,
+            Mixing(1.0, 0.0, 0.5),
+            words,
+            i * inner,
+            part > 0,
+            certain if part > 0 else settings.line_jitter_threshold,
+            changes[part],
+            limits,
+            population,
+            i,
+            inner + 4,
+        )
 
 
 @kernel
@@ -155,61 +281,3 @@ def rank_best(keys: NDArray[np.int64], best: NDArray[np.int64]) -> None:
             best[at] = best[at - 1]
             at -= 1
         best[at] = i
-
-
-@kernel
-def cross(
-    fitter: NDArray[np.int32],
-    other: NDArray[np.int32],
-    child: NDArray[np.int32],
-    mixing: tuple[int, int],
-) -> None:
-    """Arithmetical crossover (KG18 eq. (6)), rounded half up.
-
-    A multiple of 1 / (2 d) is lifted by 1 / (4 d) before its floor is taken, as the way points
-    are (`gapath.kernels.bspline`): exact, and faster than a division of integers.
-
-    Parameters
-    ----------
-    fitter, other : (n,) int32
-        The parents.
-    child : (n,) int32
-        Overwritten.
-    mixing : (int, int)
-        The coefficient D as numerator and denominator d.
-    """
-    numerator, denominator = mixing
-    share, rest = numerator / denominator, (denominator - numerator) / denominator
-    rounding = 0.5 + 0.25 / denominator
-    for g in range(child.shape[0]):
-        child[g] = np.int32(np.floor(share * fitter[g] + rest * other[g] + rounding))
-
-
-@kernel
-def mutate(
-    child: NDArray[np.int32],
-    limits: NDArray[np.int32],
-    half: int,
-    threshold: np.uint64,
-    words: NDArray[np.uint64],
-) -> None:
-    """Add to each gene, with a probability, an integer in [-h/2, h/2] (KG18 Sec. 3.7).
-
-    Parameters
-    ----------
-    child : (n,) int32
-        Changed in place.
-    limits : (2, n) int32
-        `gene_limits`: genes of start and target, and those outside the map, move back.
-    half : int
-        h / 2, rounded down; h is the smaller side of the map.
-    threshold : uint64
-        The probability as `gapath.rng.probability_threshold` gives it.
-    words : (n,) uint64
-        Random words, one for each gene.
-    """
-    least, greatest = limits[0], limits[1]
-    for g in range(child.shape[0]):
-        change = low(words[g], 2 * half + 1) - half if happens(words[g], threshold) else 0
-        gene = np.int64(child[g]) + change
-        child[g] = min(max(gene, np.int64(least[g])), np.int64(greatest[g]))

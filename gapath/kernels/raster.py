@@ -61,7 +61,7 @@ def polyline(way_points: NDArray[np.int32]) -> NDArray[np.int32]:
         dy = abs(np.int64(way_points[j, 1]) - way_points[j - 1, 1])
         count += max(dx, dy)
     fields = np.empty((count, 2), dtype=np.int32)
-    fields[0] = way_points[0]
+    fields[0, 0], fields[0, 1] = way_points[0, 0], way_points[0, 1]
     at = 1
     for j in range(1, way_points.shape[0]):
         x0, y0 = np.int64(way_points[j - 1, 0]), np.int64(way_points[j - 1, 1])

@@ -19,7 +19,7 @@ from gapath.kernels.evolution import (
     SETTINGS,
     EvolutionResult,
     evaluations,
-    run_evolution,
+    run_evolutions,
 )
 from gapath.kernels.fitness import KEY_BITS, ONE_OBSTACLE
 from gapath.kernels.history import fitness_history
@@ -143,14 +143,14 @@ class Planner:
             FOUND with the best path, or NOT_FOUND with the best fitness.
         """
         grid = problem.map
-        result = run_evolution(
+        result = run_evolutions(
             grid.table,
             (*problem.start, *problem.target),
             int(problem.corner_cutting),
             self._settings,
             self._basis,
-            stream,
-        )
+            stream[None],
+        )[0]
         key = int(result.epochs["key"][-1])
         found = key < ONE_OBSTACLE
         return Plan(

@@ -10,15 +10,21 @@ from gapath.grid import GridMap
 from gapath.kernels.bspline import basis
 from gapath.kernels.evaluation import MOST_FIELDS, evaluate, workspace
 from gapath.kernels.fitness import OBSTACLE, fitness
+from gapath.kernels.lanes import CHROMOSOMES
+from gapath.kernels.population import width
 from gapath.kernels.raster import COORDINATE_LIMIT
 
 
 def both(table, chromosomes, splines, rule):
-    keys = np.empty(len(chromosomes), dtype=np.int64)
-    memory = workspace(splines, len(chromosomes))
+    count, genes = chromosomes.shape
+    matrix = np.full((count + 2 + CHROMOSOMES, width(genes)), -(2**31), dtype=np.int32)
+    matrix[2 : count + 2, :genes] = chromosomes
+    keys = np.full(count + 3, -7, dtype=np.int64)
+    memory = workspace(splines)
     for _ in range(2):  # the second time on memory that is used
-        evaluate(table, chromosomes, splines, rule, keys, memory)
-    return keys.tolist(), [fitness(table, row, splines, rule) for row in chromosomes]
+        evaluate(table, matrix, 2, count + 2, splines, rule, keys, memory)
+    assert keys[:2].tolist() == [-7, -7] and keys[-1] == -7
+    return keys[2:-1].tolist(), [fitness(table, row, splines, rule) for row in chromosomes]
 
 
 def draw_table(random, rows, cols):
