@@ -23,6 +23,7 @@ QUESTIONS = (
     "exact",
     "growth",
     "growth_settings",
+    "threads",
     "sweep",
     "logging",
     "drives",

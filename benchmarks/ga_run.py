@@ -1,10 +1,12 @@
 """A whole GA run: how many times faster than a textbook kernel, than A*, Dijkstra and the paper.
 
-Times are those of `Planner.plan`, in microseconds. Both kernels run inside the same planner
-with the same random streams, and give identical epochs, chromosomes, costs and paths, or
-this stops. A ratio "... / GA" above 1 says that gapath's genetic algorithm is the faster one.
-A run that finds nothing counts with its 500 epochs, except against the paper's times: Table 1,
-executions that found a path, Python 3.6 on another machine, so an order of magnitude, no more.
+Microseconds. "a run" is one of a batch: one call of a kernel does `RUNS` of them, without Python
+in between, once with gapath's kernel and once with the textbook one, in turn. Both take the same
+random streams and give identical epochs, chromosomes and costs, or this stops. "GA" and what
+follows are single calls of `Planner.plan`, the path included. A ratio "... / GA" above 1 says that
+gapath's genetic algorithm is the faster one. A run that finds nothing counts with its 500 epochs,
+except against the paper's times: Table 1, executions that found a path, Python 3.6 on another
+machine, so an order of magnitude, no more.
 """
 
 import statistics
@@ -28,69 +30,98 @@ from benchmarks.measure import (
     ratios,
 )
 from gapath.kernels import evolution
-from gapath.problem import Plan, Planner, Problem
+from gapath.kernels.evolution import EvolutionResult
+from gapath.problem import Planner, Problem
 from gapath.rng import Stream, stream
 
-KERNELS: dict[str, Callable[..., Any]] = {"GA": evolution.evolve, "textbook": textbook.evolve}
+KERNELS: dict[str, Callable[..., Any]] = {"gapath": evolution.evolve, "textbook": textbook.evolve}
 """Kernels with the signature of `gapath.kernels.evolution.evolve`; rivals enter here."""
 
+RUNS = 20
+"""Runs of a batch."""
 
-def plan_with(
-    kernel: Callable[..., Any], planner: Planner, problem: Problem, random: Stream
-) -> Plan:
-    """Plan, the evolution done by another kernel."""
+
+def evolve_with(
+    kernel: Callable[..., Any], planner: Planner, problem: Problem, streams: Stream
+) -> list[EvolutionResult]:
+    """Run a batch by another kernel."""
     before = evolution.evolve
     evolution.evolve = kernel
     try:
-        return planner.plan(problem, random)
+        return evolution.run_evolutions(*_query(planner, problem), streams.copy())
     finally:
         evolution.evolve = before
 
 
-def check_identical(ours: Plan, other: Plan, name: str) -> None:
-    """Raise RuntimeError unless two plans have the same history, path and cost."""
-    assert ours.evolution is not None and other.evolution is not None
-    same = ours.cost == other.cost and np.array_equal(ours.path, other.path)
-    for a, b in zip(ours.evolution, other.evolution, strict=True):
-        same = same and np.array_equal(a, b)
-    if not same:
-        raise RuntimeError(f"the {name} kernel gives another result: {ours} and {other}")
+def _query(planner: Any, problem: Problem) -> tuple[Any, ...]:
+    ends, rule = (*problem.start, *problem.target), int(problem.corner_cutting)
+    return problem.map.table, ends, rule, planner._settings, planner._basis
+
+
+def check_identical(ours: list[EvolutionResult], other: list[EvolutionResult], name: str) -> None:
+    """Raise RuntimeError unless the runs of two batches have the same history."""
+    for run, both in enumerate(zip(ours, other, strict=True)):
+        if not all(np.array_equal(a, b) for a, b in zip(*both, strict=True)):
+            raise RuntimeError(f"the {name} kernel gives another run {run}: {both}")
+
+
+def time_batches(planner: Any, problem: Problem, rounds: int) -> dict[str, list[float]]:
+    """Time one run of a batch, in microseconds, for each kernel and round."""
+    table, ends, rule, settings, basis = _query(planner, problem)
+    most, genes = planner.max_epochs, 2 * planner.control_points
+    kept = (
+        np.empty((RUNS, most), dtype=evolution.EPOCHS),
+        np.empty((RUNS, most, genes), dtype=np.int32),
+        np.empty(RUNS, dtype=np.int64),
+    )
+
+    def batch(seed: int) -> Calls:
+        streams = np.array([stream(seed, trial) for trial in range(RUNS)])
+        calls: Calls = {}
+        for name, kernel in KERNELS.items():
+            given = (table, ends, rule, settings, *basis, streams.copy(), *kept)
+            calls[name] = partial(kernel, *given)
+        return calls
+
+    times, _ = interleave([batch(seed) for seed in range(rounds + 1)])
+    return {name: [t / RUNS for t in sample] for name, sample in times.items()}
 
 
 def measure(quick: bool) -> list[Row]:
     return [
-        _setting(problem, name, seeds=5 if quick else 200)
+        _setting(problem, name, rounds=1 if quick else 10)
         for problem in map(make_problem, MAPS)
         for name in SETTINGS
     ]
 
 
-def _setting(problem: Problem, name: str, seeds: int) -> Row:
-    planner, random = make_planner(name), stream(0)
+def _setting(problem: Problem, name: str, rounds: int) -> Row:
+    planner: Any = make_planner(name)
+    streams = np.array([stream(0, trial) for trial in range(RUNS)])
+    results = {rival: evolve_with(k, planner, problem, streams) for rival, k in KERNELS.items()}
+    for rival, found in results.items():
+        check_identical(results["gapath"], found, rival)
+    batches = time_batches(planner, problem, rounds)
+
     exact: Calls = {
-        "A*": partial(make_planner("astar").plan, problem, random),
-        "Dijkstra": partial(make_planner("dijkstra").plan, problem, random),
+        rival: partial(make_planner(planner_name).plan, problem, stream(0))
+        for rival, planner_name in (("A*", "astar"), ("Dijkstra", "dijkstra"))
     }
     times, plans = interleave(
         [
-            {
-                rival: partial(plan_with, kernel, planner, problem, stream(seed))
-                for rival, kernel in KERNELS.items()
-            }
-            | exact
-            for seed in (0, *range(seeds))
+            {"GA": partial(planner.plan, problem, stream(seed))} | exact
+            for seed in (0, *range(RUNS * rounds))
         ]
     )
-    for found in plans:
-        for rival in KERNELS:
-            check_identical(found["GA"], found[rival], rival)
     row: Row = {
         "map": problem.map.name,
         "planner": name,
         "epochs": quartiles([found["GA"].epochs for found in plans]),
     }
+    row |= {f"a run, {rival}": quartiles(sample) for rival, sample in batches.items()}
+    row["textbook / gapath"] = ratios(batches["textbook"], batches["gapath"])
     row |= {f"{rival} us": quartiles(sample) for rival, sample in times.items()}
-    row |= {f"{rival} / GA": ratios(times[rival], times["GA"]) for rival in times if rival != "GA"}
+    row |= {f"{rival} / GA": ratios(times[rival], times["GA"]) for rival in exact}
     for rival, paper_name in (("GA", name), ("Dijkstra", "dijkstra")):
         paper = found_seconds(problem.map.name, paper_name)
         ours = [t for t, plan in zip(times[rival], plans, strict=True) if plan[rival].feasible]

@@ -262,3 +262,28 @@ class Planner(Protocol):
         Plan
             The answer, also when nothing was found.
         """
+
+
+@runtime_checkable
+class Batching(Protocol):
+    """A planner that plans many times in one call, without Python in between."""
+
+    @property
+    def most_at_once(self) -> int:
+        """Plans that one call is best asked for at most; what they keep has to fit memory."""
+
+    def plan_many(self, problem: Query, streams: NDArray[np.uint64]) -> list[Plan]:
+        """Plan once for each stream, as `Planner.plan` does.
+
+        Parameters
+        ----------
+        problem : Query
+            Start and target on a known map.
+        streams : (n, 4) uint64
+            Random streams, advanced in place.
+
+        Returns
+        -------
+        list of Plan
+            In their order.
+        """

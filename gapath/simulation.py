@@ -5,9 +5,11 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+import numpy as np
+
 from gapath.graph import shortest_path
 from gapath.metrics import flaw
-from gapath.problem import Plan, Planner, PlanStatus, Problem
+from gapath.problem import Batching, Plan, Planner, PlanStatus, Problem
 from gapath.rng import stream
 from gapath.threads import in_order
 
@@ -81,7 +83,8 @@ def plan_trials(
     seed, trials : int
         Keys of the random streams.
     threads : int
-        Threads that plan; with more than one a trial's time may hold a wait for another.
+        Threads that plan. With more than one a trial's time may hold a wait for another, and
+        where the planner plans batches each trial has its batch's mean time.
 
     Yields
     ------
@@ -99,12 +102,44 @@ def plan_trials(
         return
     planner.plan(problem, stream(seed, 0))  # compiles the kernels before the clock runs
 
-    def work(number: int) -> TimedPlan:
-        random = stream(seed, number)
-        begin = time.perf_counter()
-        plan = planner.plan(problem, random)
-        return TimedPlan(number, plan, time.perf_counter() - begin)
+    many = planner if threads > 1 and isinstance(planner, Batching) else None
 
-    for answer in in_order(work, trials, threads):
-        _check(problem, answer.plan, seed, answer.number)
-        yield answer
+    def work(batch: range) -> list[TimedPlan]:
+        randoms = [stream(seed, number) for number in batch]
+        begin = time.perf_counter()
+        if many:
+            plans = many.plan_many(problem, np.array(randoms))
+        else:
+            plans = [planner.plan(problem, random) for random in randoms]
+        mean = (time.perf_counter() - begin) / len(batch)
+        return [TimedPlan(*answer, mean) for answer in zip(batch, plans, strict=True)]
+
+    pieces = batches(trials, threads, many.most_at_once if many else 1)
+    for answers in in_order(work, pieces, threads):
+        for answer in answers:
+            _check(problem, answer.plan, seed, answer.number)
+            yield answer
+
+
+def batches(trials: int, threads: int, most: int) -> Iterator[range]:
+    """Divide trials into batches, the last ones small, so that all threads end at about one time.
+
+    Parameters
+    ----------
+    trials : int
+        How many trials.
+    threads : int
+        Threads that take batches, one after the other.
+    most : int
+        Trials of the largest batch.
+
+    Yields
+    ------
+    range
+        Numbers of trials, in order.
+    """
+    begin = 0
+    while begin < trials:
+        size = min(max((trials - begin) // (4 * threads), 1), most)
+        yield range(begin, begin + size)
+        begin += size

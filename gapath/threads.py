@@ -1,44 +1,45 @@
 """Trials on several threads: kernels run beside one another, results come in order."""
 
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import TypeVar
 
+P = TypeVar("P")
 T = TypeVar("T")
 
 AHEAD = 16
-"""So many trials a thread may wait to be told; a trial's history is up to a gigabyte."""
+"""So many pieces a thread may wait to be told; what a trial keeps may be up to a gigabyte."""
 
 
-def in_order(work: Callable[[int], T], count: int, threads: int) -> Iterator[T]:
-    """Do numbered pieces of work.
+def in_order(work: Callable[[P], T], pieces: Iterable[P], threads: int) -> Iterator[T]:
+    """Do pieces of work.
 
     Which thread takes which piece is left to chance, so fast and slow ones mix; a result may
-    depend on its number alone.
+    depend on its piece alone.
 
     Parameters
     ----------
     work : callable
-        Does the piece with a number.
-    count : int
-        Pieces 0 to count - 1.
+        Does a piece.
+    pieces : iterable
+        What there is to do.
     threads : int
         How many threads work; with one it is the caller's own.
 
     Yields
     ------
     object
-        The results, in the order of their numbers.
+        The results, in the order of their pieces.
     """
     if threads == 1:
-        yield from map(work, range(count))
+        yield from map(work, pieces)
         return
     pool = ThreadPoolExecutor(threads)
     try:
         waiting: deque[Future[T]] = deque()
-        for number in range(count):
-            waiting.append(pool.submit(work, number))
+        for piece in pieces:
+            waiting.append(pool.submit(work, piece))
             if len(waiting) >= AHEAD * threads:
                 yield waiting.popleft().result()
         while waiting:

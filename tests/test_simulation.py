@@ -5,13 +5,15 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from strategies import planner
 
 from gapath.graph import shortest_path
 from gapath.grid import GridMap
 from gapath.mapio.reconstructed import generate
 from gapath.problem import Plan, PlanStatus, Problem
-from gapath.simulation import plan_trials
+from gapath.simulation import batches, plan_trials
 from gapath.threads import in_order
 
 OPEN = Problem(GridMap("open", np.full((9, 9), 0.5)), (0, 4), (8, 4))
@@ -91,6 +93,40 @@ def test_threads_change_no_plan(threads):
         assert a.plan.evolution.chromosomes.tolist() == b.plan.evolution.chromosomes.tolist()
 
 
+@given(st.integers(0, 3000), st.integers(1, 9), st.integers(1, 64))
+def test_batches_hold_every_trial_once_and_end_small(trials, threads, most):
+    found = list(batches(trials, threads, most))
+    assert [number for batch in found for number in batch] == list(range(trials))
+    sizes = [len(batch) for batch in found]
+    assert sizes == sorted(sizes, reverse=True)
+    assert all(1 <= size <= most for size in sizes)
+    left = 0  # what a batch may make others wait for is little beside what is still to do
+    for size in reversed(sizes):
+        left += size
+        assert size == 1 or 4 * threads * size <= left
+
+
+def test_a_planner_that_plans_many_is_asked_for_as_many_as_it_likes():
+    sizes = []
+
+    class Many(Counter):
+        most_at_once = 5
+
+        def plan_many(self, problem, streams):
+            sizes.append(len(streams))
+            return [self.plan(problem, stream) for stream in streams]
+
+    optimum = shortest_path(OPEN)
+    trials = list(plan_trials(OPEN, optimum, Many([]), 3, 100, 2))
+    assert max(sizes) == 5 and sum(sizes) == 100
+    assert [trial.number for trial in trials] == list(range(100))
+    counter = Counter([])
+    list(plan_trials(OPEN, optimum, counter, 3, 100))
+    many = Many([])
+    list(plan_trials(OPEN, optimum, many, 3, 100, 2))
+    assert sorted(many.words[1:]) == sorted(counter.words[1:])
+
+
 def test_a_failure_on_a_thread_ends_all_of_them():
     started = []
 
@@ -100,7 +136,7 @@ def test_a_failure_on_a_thread_ends_all_of_them():
             raise ValueError("three")
         return number
 
-    results = in_order(work, 10_000, 2)
+    results = in_order(work, range(10_000), 2)
     assert [next(results) for _ in range(3)] == [0, 1, 2]
     with pytest.raises(ValueError, match="three"):
         next(results)

@@ -109,6 +109,12 @@ class Planner:
         )
 
     @cached_property
+    def most_at_once(self) -> int:
+        """Runs of `plan_many` whose histories take some 16 MiB, at most 64: more save nothing."""
+        history = self.max_epochs * (24 + 8 * self.control_points)
+        return min(max((1 << 24) // history, 1), 64)
+
+    @cached_property
     def _basis(self) -> Basis:
         return basis(self.control_points, self.way_points, self.sampling == "span")
 
@@ -142,15 +148,34 @@ class Planner:
         Plan
             FOUND with the best path, or NOT_FOUND with the best fitness.
         """
-        grid = problem.map
-        result = run_evolutions(
-            grid.table,
+        return self.plan_many(problem, stream[None])[0]
+
+    def plan_many(self, problem: Query, streams: NDArray[np.uint64]) -> list[Plan]:
+        """Run the genetic algorithm once for each stream, in one call of the kernel.
+
+        Parameters
+        ----------
+        problem : Query
+            Start and target on a known map.
+        streams : (n, 4) uint64
+            Random streams, advanced in place.
+
+        Returns
+        -------
+        list of Plan
+            As `plan` gives them.
+        """
+        results = run_evolutions(
+            problem.map.table,
             (*problem.start, *problem.target),
             int(problem.corner_cutting),
             self._settings,
             self._basis,
-            stream[None],
-        )[0]
+            streams,
+        )
+        return [self._plan(result) for result in results]
+
+    def _plan(self, result: EvolutionResult) -> Plan:
         key = int(result.epochs["key"][-1])
         found = key < ONE_OBSTACLE
         return Plan(

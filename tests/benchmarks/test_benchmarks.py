@@ -24,6 +24,7 @@ from benchmarks import (
     row_column,
     sweep,
     textbook,
+    threads,
     visibility,
     visibility_agreement,
     visibility_growth,
@@ -34,34 +35,55 @@ from gapath.problem import CornerCutting, Problem
 from gapath.rng import stream
 
 
-def both(problem, ga, seed):
-    plans = [
-        ga_run.plan_with(kernel, ga, problem, stream(seed)) for kernel in ga_run.KERNELS.values()
-    ]
-    ga_run.check_identical(plans[0], plans[1], "textbook")
-    return plans
+def check_kernels(problem, ga, seeds):
+    streams = np.array([stream(seed) for seed in seeds])
+    kernels = ga_run.KERNELS.values()
+    ours, other = (ga_run.evolve_with(kernel, ga, problem, streams) for kernel in kernels)
+    ga_run.check_identical(ours, other, "textbook")
 
 
 @pytest.mark.parametrize("map_name", MAPS)
 @pytest.mark.parametrize("name", SETTINGS)
 def test_the_textbook_kernel_is_identical(map_name, name):
-    for seed in range(5):
-        both(make_problem(map_name), make_planner(name), seed)
+    check_kernels(make_problem(map_name), make_planner(name), range(5))
 
 
 @settings(max_examples=50)
 @given(problems(), st.integers(3, 5), st.booleans(), st.integers(0, 2**64 - 1))
 def test_the_textbook_kernel_is_identical_on_random_maps(problem, k, clip_to_map, seed):
     problem = Problem(problem.map, problem.start, problem.target, CornerCutting.ALLOW)
-    both(problem, planner(control_points=k, clip_to_map=clip_to_map, max_epochs=20), seed)
+    ga = planner(control_points=k, clip_to_map=clip_to_map, max_epochs=20)
+    check_kernels(problem, ga, [seed, 2])
 
 
 def test_another_result_is_noticed():
     problem, ga = make_problem("kg18_test3"), make_planner("ga1")
-    ours = ga_run.plan_with(ga_run.KERNELS["GA"], ga, problem, stream(0))
-    other = ga_run.plan_with(textbook.evolve, ga, problem, stream(1))
-    with pytest.raises(RuntimeError, match="textbook kernel gives another result"):
+    streams = np.array([stream(seed) for seed in range(3)])
+    ours = ga_run.evolve_with(ga_run.KERNELS["gapath"], ga, problem, streams)
+    streams[2] = stream(3)
+    other = ga_run.evolve_with(textbook.evolve, ga, problem, streams)
+    with pytest.raises(RuntimeError, match="textbook kernel gives another run 2"):
         ga_run.check_identical(ours, other, "textbook")
+
+
+def test_runs_are_timed_in_batches():
+    times = ga_run.time_batches(make_planner("ga1"), make_problem("kg18_test1"), 2)
+    assert list(times) == list(ga_run.KERNELS)
+    assert all(len(sample) == 2 and min(sample) > 0 for sample in times.values())
+
+
+def test_jobs_on_threads_are_the_same_jobs(monkeypatch):
+    monkeypatch.setattr(threads, "MAPS", MAPS[:1])
+    rows = threads.measure(quick=True)
+    assert [row["runs"] for row in rows] == [12] * 4
+    assert all(row["one / two"].median > 0 for row in rows)
+
+
+def test_other_plans_on_two_threads_are_noticed(monkeypatch):
+    monkeypatch.setattr(threads, "MAPS", MAPS[:1])
+    monkeypatch.setattr(threads, "as_jobs", lambda jobs, number: [number])
+    with pytest.raises(RuntimeError, match="fast ones first: two threads plan otherwise"):
+        threads.measure(quick=True)
 
 
 def test_generations_are_timed_for_every_rival(monkeypatch):
@@ -216,8 +238,8 @@ def test_the_parts_of_a_sweep_add_up(monkeypatch):
     assert [row["planner"] for row in rows] == [*SETTINGS, "all"]
     for row in rows:
         parts = [row[name] for name in ("planning s", "logging s", "rest s")]
-        assert np.isclose(sum(parts), row["total s"])
-        assert row["total s"] > row["planning s"] > 0
+        assert np.isclose(sum(parts), row["one thread s"])
+        assert row["one thread s"] > row["planning s"] > 0 and row["total s"] > 0
 
 
 def test_logged_trials_have_the_epochs_asked_for(tmp_path):

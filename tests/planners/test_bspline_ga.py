@@ -58,6 +58,33 @@ def test_table1_settings_equal_the_naive_twin(map_class, population, k):
     same_as_twin(Problem(grid, grid.start, grid.target), ga, 7, 1)
 
 
+def test_many_plans_in_one_call_are_those_of_many_calls():
+    grid = generate("kg18_test3", 0)
+    problem, ga = Problem(grid, grid.start, grid.target), planner(max_epochs=30)
+    streams = np.array([rng.stream(7, trial) for trial in range(9)])
+    alone = [ga.plan(problem, row) for row in streams.copy()]
+    together = ga.plan_many(problem, streams)
+    assert len({plan.epochs for plan in alone}) > 1
+    for a, b in zip(alone, together, strict=True):
+        assert (a.status, a.cost, a.epochs, a.evaluations) == (
+            b.status,
+            b.cost,
+            b.epochs,
+            b.evaluations,
+        )
+        assert a.path.tolist() == b.path.tolist()
+        assert a.evolution.chromosomes.tolist() == b.evolution.chromosomes.tolist()
+        assert a.evolution.mean.tolist() == b.evolution.mean.tolist()
+    advanced = rng.stream(7, 8)
+    ga.plan(problem, advanced)
+    assert streams[8].tolist() == advanced.tolist()
+
+
+def test_long_histories_are_not_kept_many_at_a_time():
+    assert planner(max_epochs=500).most_at_once == 64
+    assert planner(max_epochs=10**6).most_at_once == 1
+
+
 def test_it_never_stops_before_min_epochs():
     grid = GridMap("empty", np.full((9, 9), 0.5))
     plan = planner(min_epochs=4).plan(Problem(grid, (0, 4), (8, 4)), rng.stream(0))
