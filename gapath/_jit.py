@@ -61,7 +61,9 @@ _OPTIONS = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
 def kernel(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a free function on arrays and NamedTuples to machine code.
 
-    Never `fastmath`: it changed results in nine of seventeen environments.
+    Only kernels can call one whose name begins with an underscore: without an entry for Python
+    it takes less time to compile. Never `fastmath`: it changed results in nine of seventeen
+    environments.
 
     Parameters
     ----------
@@ -73,13 +75,14 @@ def kernel(function: Callable[P, R]) -> Callable[P, R]:
     callable
         The compiled function, with the same signature.
     """
+    options = _OPTIONS | {"no_cpython_wrapper": function.__name__.startswith("_")}
     if _FOLDER is None:
-        return numba.njit(function, **_OPTIONS)  # type: ignore[no-any-return]
+        return numba.njit(function, **options)  # type: ignore[no-any-return]
     # numba reads CACHE_DIR while it decorates; other people's kernels keep their own.
     before = numba.config.CACHE_DIR  # type: ignore[attr-defined]
     numba.config.CACHE_DIR = _FOLDER  # type: ignore[attr-defined]
     try:
-        return numba.njit(function, cache=True, **_OPTIONS)  # type: ignore[no-any-return]
+        return numba.njit(function, cache=True, **options)  # type: ignore[no-any-return]
     finally:
         numba.config.CACHE_DIR = before  # type: ignore[attr-defined]
 

@@ -153,8 +153,8 @@ def way_points(chromosomes: NDArray[np.int32], basis: Basis) -> NDArray[np.int32
     points = np.empty((chromosomes.shape[0], basis.rounding.shape[0], 2), dtype=np.int32)
     for i in range(points.shape[0]):
         for j in range(points.shape[1]):
-            points[i, j, 0] = way_point(chromosomes[i], basis, j, 0)
-            points[i, j, 1] = way_point(chromosomes[i], basis, j, 1)
+            for axis in range(2):
+                points[i, j, axis] = way_point(chromosomes[i], basis, j, axis)
     return points
 
 
@@ -179,6 +179,6 @@ def rasterise(
     basis = Basis(weights, rounding)
     points = np.empty((rounding.shape[0], 2), dtype=np.int32)
     for j in range(points.shape[0]):
-        points[j, 0] = way_point(chromosome, basis, j, 0)
-        points[j, 1] = way_point(chromosome, basis, j, 1)
+        for axis in range(2):
+            points[j, axis] = way_point(chromosome, basis, j, axis)
     return polyline(points)

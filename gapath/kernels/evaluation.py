@@ -237,7 +237,7 @@ def evaluate_one_by_one(
 
 
 @kernel
-def _evaluate_side_by_side(
+def evaluate_side_by_side(
     table: NDArray[np.int32],
     chromosomes: NDArray[np.int32],
     begin: int,
@@ -247,6 +247,7 @@ def _evaluate_side_by_side(
     keys: NDArray[np.int64],
     memory: Workspace,
 ) -> None:
+    """Do what `evaluate_one_by_one` does, but faster."""
     rows, cols = table.shape
     flat = table.reshape(rows * cols)
     values, indices = memory.lines, memory.indices
@@ -295,5 +296,4 @@ def _evaluate_side_by_side(
             keys[first + i] = (counted << KEY_BITS) + cost
 
 
-evaluate = _evaluate_side_by_side if JIT else evaluate_one_by_one
-"""`evaluate_one_by_one`, but faster."""
+evaluate = evaluate_side_by_side if JIT else evaluate_one_by_one

@@ -150,8 +150,8 @@ def evolve(
     )
 
     columns = width(genes)
-    population = np.zeros((size + CHROMOSOMES, columns), dtype=np.int32)
-    offspring = np.zeros((size + CHROMOSOMES, columns), dtype=np.int32)
+    population = np.empty((size + CHROMOSOMES, columns), dtype=np.int32)
+    offspring = np.empty((size + CHROMOSOMES, columns), dtype=np.int32)
     for i in range(size):
         for g in range(2):
             population[i, g] = offspring[i, g] = ends[g]
@@ -165,8 +165,9 @@ def evolve(
     half = min(rows, cols) // 2  # KG18 Sec. 3.7: a gene changes by at most half the smaller side
     changes = np.empty((2, columns), dtype=np.int32)
     changes[0], changes[1] = 2 * half + 1, half
-    first = np.zeros(size * (genes - 4) + GENES, dtype=np.uint64)
-    words = np.zeros(columns, dtype=np.uint64)
+    first = np.empty(size * (genes - 4) + GENES, dtype=np.uint64)
+    words = np.empty(columns, dtype=np.uint64)
+    lower, word = np.int64(0), np.int64(1)  # which half of which words
     drawn = words[: genes - 3]  # one for the parents, one for each inner gene
 
     for run in range(streams.shape[0]):
@@ -212,8 +213,8 @@ def evolve(
                     b,
                     mixing,
                     words,
-                    1,
-                    False,
+                    word,
+                    lower,
                     setting["mutation_threshold"],
                     changes,
                     limits,

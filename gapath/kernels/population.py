@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from gapath._jit import JIT, kernel
 from gapath.kernels.lanes import GENES, vary_genes
 from gapath.kernels.raster import COORDINATE_LIMIT
-from gapath.rng import happens, high, low
+from gapath.rng import happens, low
 
 
 class Ends(NamedTuple):
@@ -37,14 +37,6 @@ class InitialPopulation(NamedTuple):
 
 
 @kernel
-def clip(gene: int, side: int, clip_to_map: bool) -> int:
-    """Keep a gene on the map, or at least within what the raster can count."""
-    if clip_to_map:
-        return min(max(gene, 0), side - 1)
-    return min(max(gene, -COORDINATE_LIMIT), COORDINATE_LIMIT)
-
-
-@kernel
 def gene_limits(
     limits: NDArray[np.int32], ends: Ends, genes: int, rows: int, cols: int, clip_to_map: bool
 ) -> None:
@@ -57,18 +49,16 @@ def gene_limits(
     ends : Ends
         First and last control point.
     genes : int
-        2 k; what follows stays 0.
+        2 k; what follows is left alone.
     rows, cols : int
         Size of the map.
     clip_to_map : bool
-        Keep genes on the map.
+        Keep genes on the map, not only within what the raster can count.
     """
-    limits[:] = 0
-    for g in range(0, genes, 2):
-        for bound in range(2):
-            far = (2 * bound - 1) * COORDINATE_LIMIT
-            limits[bound, g] = clip(far, cols, clip_to_map)
-            limits[bound, g + 1] = clip(far, rows, clip_to_map)
+    for g in range(genes):
+        side = rows if g % 2 else cols
+        limits[0, g] = 0 if clip_to_map else -COORDINATE_LIMIT
+        limits[1, g] = side - 1 if clip_to_map else COORDINATE_LIMIT
     for bound in range(2):
         limits[bound, 0], limits[bound, 1] = ends.start_x, ends.start_y
         limits[bound, genes - 2], limits[bound, genes - 1] = ends.target_x, ends.target_y
@@ -100,7 +90,7 @@ def vary_one_by_one(
     mixing: Mixing,
     words: NDArray[np.uint64],
     first: int,
-    upper: bool,
+    shift: int,
     threshold: np.uint64,
     changes: NDArray[np.int32],
     limits: NDArray[np.int32],
@@ -122,8 +112,8 @@ def vary_one_by_one(
         Random words; p >= first + 2 k - 4 + GENES.
     first : int
         The word of the first inner gene.
-    upper : bool
-        Draw the change from a word's upper half, not from its lower one.
+    shift : int
+        0 to draw the change from a word's lower half, 32 for its upper one.
     threshold : uint64
         The probability of a change, as `gapath.rng.probability_threshold` gives it; it is decided
         by the upper half.
@@ -144,19 +134,19 @@ def vary_one_by_one(
         word = words[first + g - 2]
         if happens(word, threshold):
             values = np.int64(changes[0, g])
-            gene += (high(word, values) if upper else low(word, values)) - changes[1, g]
+            gene += low(word >> np.uint64(shift), values) - changes[1, g]
         children[child, g] = min(max(gene, np.int64(limits[0, g])), np.int64(limits[1, g]))
 
 
 @kernel
-def _vary_side_by_side(
+def vary_side_by_side(
     parents: NDArray[np.int32],
     fitter: int,
     other: int,
     mixing: Mixing,
     words: NDArray[np.uint64],
     first: int,
-    upper: bool,
+    shift: int,
     threshold: np.uint64,
     changes: NDArray[np.int32],
     limits: NDArray[np.int32],
@@ -164,6 +154,7 @@ def _vary_side_by_side(
     child: int,
     genes: int,
 ) -> None:
+    """Do what `vary_one_by_one` does, but faster."""
     for g in range(2, genes - 2, GENES):
         vary_genes(
             parents,
@@ -174,7 +165,7 @@ def _vary_side_by_side(
             mixing.rounding,
             words,
             first + g - 2,
-            32 if upper else 0,
+            shift,
             threshold,
             changes,
             limits,
@@ -184,8 +175,7 @@ def _vary_side_by_side(
         )
 
 
-vary = _vary_side_by_side if JIT else vary_one_by_one
-"""`vary_one_by_one`, but genes that follow one another at once."""
+vary = vary_side_by_side if JIT else vary_one_by_one
 
 
 @kernel
@@ -224,38 +214,47 @@ def initialise(
     """
     inner = (words.shape[0] - GENES) // size
     segments = inner // 2 + 1
-    start = (ends.start_x, ends.start_y)
-    target = (ends.target_x, ends.target_y)
-    sides = (cols, rows)
-    certain = np.uint64(1 << 32)
-    middles = np.zeros((3, limits.shape[1]), dtype=np.int32)  # what each part is a change of
-    changes = np.zeros((3, 2, limits.shape[1]), dtype=np.int32)
-    for g in range(2, inner + 2):
-        axis = g % 2
-        d = target[axis] - start[axis]
-        margin = min(settings.margin, (sides[axis] - 1) // 2)
-        middles[0, g] = start[axis] + (2 * (g // 2) * d + segments) // (2 * segments)
-        middles[1, g] = start[axis]
-        changes[0, 0, g], changes[0, 1, g] = 2 * settings.line_jitter + 1, settings.line_jitter
-        changes[1, 0, g], changes[1, 1, g] = 2 * settings.neighbourhood + 1, settings.neighbourhood
-        changes[2, 0, g], changes[2, 1, g] = sides[axis] - 2 * margin, -margin
-    for i in range(size):
-        part = 3 * i // size
-        vary(
-            middles,
-            part,
-            part,
-            Mixing(1.0, 0.0, 0.5),
-            words,
-            i * inner,
-            part > 0,
-            certain if part > 0 else settings.line_jitter_threshold,
-            changes[part],
-            limits,
-            population,
-            i,
-            inner + 4,
-        )
+    middle = np.empty((1, limits.shape[1]), dtype=np.int32)  # what a part is a change of
+    changes = np.empty((2, limits.shape[1]), dtype=np.int32)
+    i = np.int64(0)
+    for part in range(3):
+        for g in range(2, inner + 2):
+            start, target, side = (
+                (ends.start_y, ends.target_y, rows)
+                if g % 2
+                else (ends.start_x, ends.target_x, cols)
+            )
+            if part == 0:
+                d = target - start
+                middle[0, g] = start + (2 * (g // 2) * d + segments) // (2 * segments)
+                changes[0, g] = 2 * settings.line_jitter + 1
+                changes[1, g] = settings.line_jitter
+            elif part == 1:
+                middle[0, g] = start
+                changes[0, g] = 2 * settings.neighbourhood + 1
+                changes[1, g] = settings.neighbourhood
+            else:
+                margin = min(settings.margin, (side - 1) // 2)
+                middle[0, g] = margin
+                changes[0, g] = side - 2 * margin
+                changes[1, g] = 0
+        while i < size and 3 * i // size == part:
+            vary(
+                middle,
+                np.int64(0),
+                np.int64(0),
+                Mixing(1.0, 0.0, 0.5),
+                words,
+                i * inner,
+                32 if part > 0 else 0,
+                np.uint64(1 << 32) if part > 0 else settings.line_jitter_threshold,
+                changes,
+                limits,
+                population,
+                i,
+                inner + 4,
+            )
+            i += 1
 
 
 @kernel

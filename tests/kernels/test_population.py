@@ -107,7 +107,7 @@ def children(operator, parents, genes, mixing=EVEN, probability=0.0, half=0, cli
     threshold = probability_threshold(probability)
     drawn = words(genes - 4, seed)
     box = limits(genes, clip)
-    operator(matrix, 0, 1, mixing, drawn, 0, False, threshold, changes, box, found, 0, genes)
+    operator(matrix, 0, 1, mixing, drawn, 0, 0, threshold, changes, box, found, 0, genes)
     return found[0, 2 : genes - 2]
 
 
@@ -164,7 +164,9 @@ def test_many_genes_at_once_are_as_one_by_one(k, fraction, probability, upper, f
     found = []
     for operator in (vary, vary_one_by_one):
         made = np.full((3, columns), -7, dtype=np.int32)
-        operator(parents, 1, 3, mixing, drawn, 2, upper, threshold, changes, box, made, 1, genes)
+        operator(
+            parents, 1, 3, mixing, drawn, 2, 32 * upper, threshold, changes, box, made, 1, genes
+        )
         assert (made[0] == -7).all() and (made[2] == -7).all()
         assert (made[1, :2] == -7).all()
         found.append(made[1, 2 : genes - 2].tolist())
