@@ -14,6 +14,7 @@ from benchmarks.measure import Quartiles, Row, machine
 from benchmarks.targets import TARGETS, judge
 
 QUESTIONS = (
+    "fitness",
     "ga_run",
     "epochs",
     "row_column",

@@ -122,7 +122,7 @@ def test_an_unknown_question_is_one_line_and_exit_code_2(bench, capsys, tmp_path
     with pytest.raises(SystemExit) as ended:
         bench("drives", "fitnes")
     assert ended.value.code == 2
-    assert "QUESTION fitnes: no such question; choose from ga_run, " in capsys.readouterr().err
+    assert "QUESTION fitnes: no such question; choose from fitness, " in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
 
 
