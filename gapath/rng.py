@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath._jit import kernel
-from gapath.errors import require
+from gapath.errors import InputError
 
 Stream: TypeAlias = NDArray[np.uint64]
 """State of one stream, (4,) uint64: a, b, c and the counter. Kernels advance it."""
@@ -140,9 +140,8 @@ def stream(seed: int, trial: int = 0, call: int = 0) -> Stream:
         If a key is out of range.
     """
     for name, key in (("seed", seed), ("trial", trial), ("call", call)):
-        whole = isinstance(key, int | np.integer)
-        require(whole, name, repr(key), "an integer in [0, 2**64)")
-        require(0 <= key < 2**64, name, key, "an integer in [0, 2**64)")
+        if not (isinstance(key, int | np.integer) and 0 <= key < 2**64):
+            raise InputError(name, repr(key), "an integer in [0, 2**64)")
     state = np.array([seed, trial, call, 1], dtype=np.uint64)
     fill(state, np.empty(12, dtype=np.uint64))
     return state

@@ -82,7 +82,7 @@ def run_evolutions(
     epochs = np.empty(runs, dtype=np.int64)
     evolve(table, ends, rule, settings, *basis, streams, history, chromosomes, epochs)
     return [
-        EvolutionResult(history[run, :taken].copy(), chromosomes[run, :taken].copy())
+        EvolutionResult(history[run, :taken], chromosomes[run, :taken])
         for run, taken in enumerate(epochs.tolist())
     ]
 
