@@ -17,6 +17,7 @@ from gapath.mapio import file
 from gapath.naming import map_name
 from gapath.plan_task import PlanTask
 from gapath.problem import CornerCutting, Problem
+from gapath.recorders import none
 from gapath.task import Task
 from gapath.world import Changes
 
@@ -202,7 +203,8 @@ def make_run(config: DictConfig, method: str) -> Run:
         method,
         problem,
         task,
-        recorders,
+        # where nobody records, trials need not be told as events
+        [recorder for recorder in recorders if not isinstance(recorder, none.Recorder)],
         settings.seed,
         settings.trials,
         OmegaConf.to_yaml(OmegaConf.create(kept)),

@@ -176,9 +176,5 @@ def rasterise(
     (n, 2) int32
         Fields as (x, y), as `gapath.kernels.raster.polyline` gives them.
     """
-    basis = Basis(weights, rounding)
-    points = np.empty((rounding.shape[0], 2), dtype=np.int32)
-    for j in range(points.shape[0]):
-        for axis in range(2):
-            points[j, axis] = way_point(chromosome, basis, j, axis)
-    return polyline(points)
+    points = way_points(chromosome.reshape(1, chromosome.shape[0]), Basis(weights, rounding))
+    return polyline(points[0])
