@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import InputError, require
+from gapath.kernels.table import fill_table
 from gapath.units import OBSTACLE as OBSTACLE
 from gapath.units import SCALE as SCALE
 
@@ -156,8 +157,8 @@ class GridMap:
     @cached_property
     def table(self) -> Table:
         """The map as kernels read it, (rows, cols) int32, built once per map."""
-        table = np.floor(self.weights * SCALE + 0.5).astype(np.int32)
-        table[self.obstacles] = OBSTACLE
+        table = np.empty(self.weights.shape, dtype=np.int32)
+        fill_table(self.weights.ravel(), table.ravel())
         table.setflags(write=False)
         return table
 
