@@ -16,6 +16,7 @@ from benchmarks.targets import TARGETS, judge
 QUESTIONS = (
     "fitness",
     "ga_run",
+    "tricks",
     "epochs",
     "row_column",
     "visibility",

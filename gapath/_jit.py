@@ -23,7 +23,8 @@ R = TypeVar("R")
 
 def _kernel_sources() -> list[Path]:
     package = Path(__file__).parent
-    return sorted([*package.glob("kernels/*.py"), package / "rng.py", package / "_jit.py"])
+    others = (package / name for name in ("rng.py", "units.py", "_jit.py"))
+    return sorted([*package.glob("kernels/*.py"), *others])
 
 
 def _user_cache() -> Path:
