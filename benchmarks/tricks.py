@@ -1,7 +1,8 @@
 """What each thing that makes KG18's genetic algorithm fast is worth.
 
 The same work "with" it and "without", in turn, on kg18_test4 (100 x 50 fields) with GA 3's
-settings unless the row says otherwise; both give the same results, or this stops. What storing
+settings unless the row says otherwise; both give the same results, or this stops. Chromosomes to
+evaluate are drawn anywhere on the map. What storing
 places and reading entries one by one is worth against gathering them is in `fitness`, what all of
 it together is worth in `ga_run`.
 """
@@ -21,6 +22,7 @@ from gapath.kernels.evaluation import evaluate, evaluate_one_by_one, workspace
 from gapath.kernels.evolution import EPOCHS, evolve
 from gapath.kernels.lanes import CHROMOSOMES, GENES
 from gapath.kernels.population import Mixing, rank_best, vary_one_by_one, vary_side_by_side, width
+from gapath.kernels.raster import COORDINATE_LIMIT
 from gapath.kernels.table import fill_table
 from gapath.rng import fill, probability_threshold, stream
 
@@ -122,8 +124,9 @@ def breeding(rounds: int) -> Row:
     fill(stream(0), words)
     changes, limits = (np.empty((2, width(genes)), dtype=np.int32) for _ in range(2))
     changes[0], changes[1] = 51, 25
-    limits[0], limits[1] = 0, 49
-    threshold = probability_threshold(0.1)
+    limits[0], limits[1] = -COORDINATE_LIMIT, COORDINATE_LIMIT
+    planner: Any = make_planner("ga3")
+    threshold = probability_threshold(planner.mutation_probability)
     children = {kernel: np.zeros((CHILDREN, width(genes)), dtype=np.int32) for kernel in KINDS}
 
     def run(kernel: Callable[..., Any]) -> NDArray[np.int32]:
@@ -193,7 +196,8 @@ def batch(rounds: int) -> Row:
                 chromosomes[part],
                 epochs[part],
             )
-        return epochs.copy()
+        last = np.arange(RUNS), epochs - 1
+        return np.column_stack([epochs, history["key"][last], chromosomes[last]])
 
     what = "GA 1 on map 1: twenty runs in a call, not one"
     return compare(what, "ns a run", RUNS, partial(run, RUNS), partial(run, 1), rounds)
