@@ -37,6 +37,12 @@ def test_the_worst_median_counts(target, values, measured, met):
     assert row["target"] == ("<= 2 us" if target is FEWER else ">= 2")
 
 
+def test_a_miss_says_why_where_that_is_known():
+    target = MORE._replace(why="it is slow")
+    assert judge(target, rows(1.9))["met"] == "missed: it is slow"
+    assert judge(target, rows(2.0))["met"] == "met"
+
+
 def test_only_the_rows_asked_for_count():
     other = rows(0.1, map="b")["exact"] + [{"map": "a", "ms": 0.1}]
     assert judge(MORE, {"exact": [*rows(3.0)["exact"], *other]})["measured"] == 3.0
