@@ -33,8 +33,7 @@ from benchmarks.measure import Calls, Row, interleave, make_problem, quartiles, 
 from gapath.kernels.bspline import Basis, basis, rasterise
 from gapath.kernels.evaluation import evaluate, evaluate_one_by_one, workspace
 from gapath.kernels.fitness import ALLOW, KEY_BITS, OBSTACLE_BITS, ONE_OBSTACLE
-from gapath.kernels.lanes import CHROMOSOMES
-from gapath.kernels.population import width
+from gapath.kernels.lanes import chromosome_matrix
 
 MAP = "kg18_test4"
 CONTROL_POINTS, WAY_POINTS = 5, 5
@@ -69,7 +68,7 @@ class Work(NamedTuple):
 def draw(table: NDArray[np.int32], count: int) -> Work:
     """Draw control points all over a map."""
     genes = 2 * CONTROL_POINTS
-    chromosomes = np.zeros((count + CHROMOSOMES, width(genes)), dtype=np.int32)
+    chromosomes = chromosome_matrix(count, genes)
     random, (rows, cols) = np.random.default_rng(0), table.shape
     chromosomes[:count, 0:genes:2] = random.integers(0, cols, (count, CONTROL_POINTS))
     chromosomes[:count, 1:genes:2] = random.integers(0, rows, (count, CONTROL_POINTS))

@@ -20,8 +20,8 @@ from gapath.grid import OBSTACLE, SCALE
 from gapath.kernels.bspline import basis
 from gapath.kernels.evaluation import evaluate, evaluate_one_by_one, workspace
 from gapath.kernels.evolution import EPOCHS, evolve
-from gapath.kernels.lanes import CHROMOSOMES, GENES
-from gapath.kernels.population import Mixing, rank_best, vary_one_by_one, vary_side_by_side, width
+from gapath.kernels.lanes import GENES, chromosome_matrix, width
+from gapath.kernels.population import Mixing, rank_best, vary_one_by_one, vary_side_by_side
 from gapath.kernels.raster import COORDINATE_LIMIT
 from gapath.kernels.table import fill_table
 from gapath.rng import fill, probability_threshold, stream
@@ -51,7 +51,7 @@ def evaluation(rounds: int) -> list[Row]:
     table = make_problem("kg18_test4").map.table
     splines, genes = basis(CONTROL_POINTS, 5, False), 2 * CONTROL_POINTS
     random, count = np.random.default_rng(0), EPOCHS_A_CALL * POPULATION
-    rows = np.zeros((count + CHROMOSOMES, width(genes)), dtype=np.int32)
+    rows = chromosome_matrix(count, genes)
     for axis, side in enumerate(table.shape[::-1]):
         rows[:, axis:genes:2] = random.integers(0, side, (len(rows), CONTROL_POINTS))
     memory = workspace(splines)

@@ -189,7 +189,7 @@ def _add_line(
 
 @kernel
 def _corners(table: NDArray[np.int32], memory: Workspace, lines: int, i: int, rule: int) -> int:
-    """Count the steps of chromosome i that break the corner-cutting rule."""
+    """Count the steps of chromosome i that break the corner-cutting rule, one by one."""
     count = 0
     for j in range(lines):
         x0, y0, x1, y1, n = _line(memory, j, i)
@@ -217,8 +217,7 @@ def evaluate_one_by_one(
     table : (rows, cols) int32
         `GridMap.table`.
     chromosomes : (n, m) int32
-        Control points x1, y1, ..., xk, yk, a chromosome a row. Whole vectors are read: m is
-        `gapath.kernels.population.width`, and n at least end + CHROMOSOMES.
+        Control points x1, y1, ..., xk, yk, a chromosome a row.
     begin, end : int
         Rows to evaluate: from the first to before the second.
     basis : Basis
@@ -247,7 +246,10 @@ def evaluate_side_by_side(
     keys: NDArray[np.int64],
     memory: Workspace,
 ) -> None:
-    """Do what `evaluate_one_by_one` does, but faster."""
+    """Do what `evaluate_one_by_one` does, but faster.
+
+    It reads whole vectors of a `gapath.kernels.lanes.chromosome_matrix`.
+    """
     rows, cols = table.shape
     flat = table.reshape(rows * cols)
     values, indices = memory.lines, memory.indices

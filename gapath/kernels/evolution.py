@@ -14,7 +14,7 @@ from gapath.kernels.bspline import Basis
 from gapath.kernels.evaluation import evaluate, workspace
 from gapath.kernels.fitness import KEY_BITS, ONE_OBSTACLE
 from gapath.kernels.history import EPOCHS
-from gapath.kernels.lanes import CHROMOSOMES, GENES
+from gapath.kernels.lanes import GENES, chromosome_matrix
 from gapath.kernels.population import (
     Ends,
     InitialPopulation,
@@ -23,7 +23,6 @@ from gapath.kernels.population import (
     initialise,
     rank_best,
     vary,
-    width,
 )
 from gapath.rng import fill, high, low
 
@@ -149,9 +148,8 @@ def evolve(
         setting["margin"],
     )
 
-    columns = width(genes)
-    population = np.empty((size + CHROMOSOMES, columns), dtype=np.int32)
-    offspring = np.empty((size + CHROMOSOMES, columns), dtype=np.int32)
+    population, offspring = chromosome_matrix(size, genes), chromosome_matrix(size, genes)
+    columns = population.shape[1]
     for i in range(size):
         for g in range(2):
             population[i, g] = offspring[i, g] = ends[g]
@@ -166,9 +164,9 @@ def evolve(
     changes = np.empty((2, columns), dtype=np.int32)
     changes[0], changes[1] = 2 * half + 1, half
     first = np.empty(size * (genes - 4) + GENES, dtype=np.uint64)
-    words = np.empty(columns, dtype=np.uint64)
-    lower, word = np.int64(0), np.int64(1)  # which half of which words
+    words = np.empty(genes - 3 + GENES, dtype=np.uint64)
     drawn = words[: genes - 3]  # one for the parents, one for each inner gene
+    lower, word = np.int64(0), np.int64(1)  # no literals, for which `vary` would be compiled again
 
     for run in range(streams.shape[0]):
         stream = streams[run]

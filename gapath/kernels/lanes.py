@@ -1,4 +1,4 @@
-"""Vectors of numbers in a processor's registers: the only place that knows about lanes.
+"""Vectors of numbers in a processor's registers: the only place that makes them.
 
 A processor adds and multiplies sixteen numbers as fast as one. The functions here do so, as
 vectors of LLVM's intermediate language: with the lanes that the processor has, on any processor.
@@ -20,15 +20,22 @@ vectors of LLVM's intermediate language: with the lanes that the processor has, 
   processor has an instruction that gathers entries from all over a table, it is often slower.
 - `vary_genes`: `GENES` genes of a child side by side.
 
+`evaluation` and `population` call these in their loops and know how many lanes there are; whoever
+else makes a matrix of chromosomes asks `chromosome_matrix`. A lane that holds no chromosome, field
+or gene is computed, too, and read by nobody.
+
 Rounding down is done by shifting to positive numbers and cutting off, which every processor can.
 """
 
 from typing import Any
 
+import numpy as np
 from llvmlite import ir
+from numpy.typing import NDArray
 
-from gapath._jit import intrinsic, types
+from gapath._jit import intrinsic, kernel, types
 from gapath.kernels.raster import COORDINATE_LIMIT, SHIFT
+from gapath.kernels.vectors import F64, I32, I64, Code, Vector
 
 CHROMOSOMES, FIELDS, GENES = 16, 32, 8
 
@@ -37,136 +44,47 @@ READ = 8
 
 FRACTION = 25
 """Fractional bits across: so many that `FIELDS` steps fit 31 bits with a sign. Rounded up, position
-and slope together lie at most (FIELDS + 1) / 2**FRACTION too high, less than 1 / (2 n) for lines
-of n <= 2**18 fields: no field changes (`gapath.kernels.raster`)."""
+and slope together lie at most (FIELDS + 1) / 2**FRACTION too high, and where a block of fields
+starts n / 2**SHIFT; that is less than 1 / (2 n) for lines of n <= 2**18 fields: no field changes
+(`gapath.kernels.raster`)."""
 
 EXCESS = 1.0 / 1024
-"""Lifts a slope above what its two roundings take off; less than one unit is left of it."""
+"""Lifts a slope above what its roundings take off; less than one unit is left of it."""
 
 STEPS, ALONG, ACROSS, SLOPE, BASE, LINE = range(6)
 """Rows of a line, and how many: steps, negative if it leaves the map; strides of the table along
 the longer and the other axis; slope across with `FRACTION` fractional bits; place of its start."""
 
-_I32, _I64, _F64 = ir.IntType(32), ir.IntType(64), ir.DoubleType()
+
+@kernel
+def width(genes: int) -> int:
+    """Give the columns of a matrix of chromosomes with so many genes: whole vectors of any kind."""
+    last = 2 + (genes - 4 + GENES - 1) // GENES * GENES  # `vary_genes` begins at the third gene
+    return (max(genes, last) + CHROMOSOMES - 1) // CHROMOSOMES * CHROMOSOMES
 
 
-class _Vector:
-    """A vector as LLVM computes it, with the operators that the formulas below need."""
+@kernel
+def chromosome_matrix(count: int, genes: int) -> NDArray[np.int32]:
+    """Make room for chromosomes, one a row, such that whole vectors of them can be read.
 
-    def __init__(self, builder: Any, value: Any) -> None:
-        self.builder, self.value, self.kind = builder, value, value.type
+    Parameters
+    ----------
+    count : int
+        Chromosomes.
+    genes : int
+        2 k.
 
-    def _binary(self, real: str, whole: str, other: "_Vector | float") -> "_Vector":
-        name = real if self.kind.element == _F64 else whole
-        return _Vector(self.builder, getattr(self.builder, name)(self.value, self._like(other)))
-
-    def _like(self, other: "_Vector | float") -> Any:
-        if isinstance(other, _Vector):
-            return other.value
-        return ir.Constant(self.kind, [other] * self.kind.count)
-
-    def __add__(self, other: "_Vector | float") -> "_Vector":
-        return self._binary("fadd", "add", other)
-
-    def __sub__(self, other: "_Vector | float") -> "_Vector":
-        return self._binary("fsub", "sub", other)
-
-    def __mul__(self, other: "_Vector | float") -> "_Vector":
-        return self._binary("fmul", "mul", other)
-
-    def __rshift__(self, bits: int) -> "_Vector":
-        return self._binary("", "ashr", bits)
-
-    def __or__(self, other: "_Vector") -> "_Vector":
-        return self._binary("", "or_", other)
-
-    def __and__(self, other: float) -> "_Vector":
-        return self._binary("", "and_", other)
-
-    def __lt__(self, other: "_Vector | float") -> "_Vector":
-        return _Vector(self.builder, self.builder.icmp_signed("<", self.value, self._like(other)))
-
-    def outside(self, side: "_Vector") -> "_Vector":
-        """Tell whether it is negative or at least as large as a side."""
-        return _Vector(self.builder, self.builder.icmp_unsigned(">=", self.value, side.value))
-
-    def choose(self, one: "_Vector", other: "_Vector | float") -> "_Vector":
-        """Give one where this is true, the other where it is false."""
-        value = self.builder.select(self.value, one.value, one._like(other))
-        return _Vector(self.builder, value)
-
-    def negative(self) -> "_Vector":
-        return _Vector(self.builder, self.builder.sub(self._like(0), self.value))
-
-    def size(self) -> "_Vector":
-        return (self < 0).choose(self.negative(), self)
-
-    def real(self) -> "_Vector":
-        kind = ir.VectorType(_F64, self.kind.count)
-        return _Vector(self.builder, self.builder.sitofp(self.value, kind))
-
-    def whole(self) -> "_Vector":
-        """Cut off what follows the point."""
-        kind = ir.VectorType(_I32, self.kind.count)
-        return _Vector(self.builder, self.builder.fptosi(self.value, kind))
-
-    def short(self) -> "_Vector":
-        """Keep the lower 32 of 64 bits."""
-        kind = ir.VectorType(_I32, self.kind.count)
-        return _Vector(self.builder, self.builder.trunc(self.value, kind))
-
-    def divide(self, number: float) -> "_Vector":
-        """Divide a number by it."""
-        return _Vector(self.builder, self.builder.fdiv(self._like(number), self.value))
+    Returns
+    -------
+    (n, m) int32
+        Not filled; rows from `count` on, and columns from `genes` on, mean nothing.
+    """
+    return np.empty((count + CHROMOSOMES, width(genes)), dtype=np.int32)
 
 
-class _Code:
-    """The code of one function: its arguments as numbers, vectors and memory."""
-
-    def __init__(self, context: Any, builder: Any, signature: Any, args: Any) -> None:
-        self.context, self.builder = context, builder
-        self.kinds, self.args = signature.args, args
-
-    def all_lanes(self, number: Any, lanes: int, kind: Any = _I32) -> _Vector:
-        """Copy a number, or the argument so numbered, into all lanes."""
-        number = self.args[number] if isinstance(number, int) else number
-        if kind == _I32 and number.type == _I64:
-            number = self.builder.trunc(number, _I32)
-        nothing = ir.Constant(ir.VectorType(kind, lanes), ir.Undefined)
-        first = self.builder.insert_element(nothing, number, _I32(0))
-        everywhere = ir.Constant(ir.VectorType(_I32, lanes), [0] * lanes)
-        return _Vector(self.builder, self.builder.shuffle_vector(first, nothing, everywhere))
-
-    def array(self, argument: int) -> Any:
-        return self.context.make_array(self.kinds[argument])(
-            self.context, self.builder, self.args[argument]
-        )
-
-    def pointer(self, argument: int, place: Any, kind: Any) -> Any:
-        """Point to what an array holds from a place on."""
-        data = self.builder.gep(self.array(argument).data, [place])
-        return self.builder.bitcast(data, ir.PointerType(kind))
-
-    def load(self, argument: int, place: Any, lanes: int, kind: Any = _I32) -> _Vector:
-        pointer = self.pointer(argument, place, ir.VectorType(kind, lanes))
-        return _Vector(self.builder, self.builder.load(pointer, align=4 if kind == _I32 else 8))
-
-    def store(self, value: _Vector, argument: int, place: Any) -> None:
-        pointer = self.pointer(argument, place, value.kind)
-        self.builder.store(value.value, pointer, align=4 if value.kind.element == _I32 else 8)
-
-    def row(self, number: Any, offset: int = 0) -> Any:
-        """Give the place of a row of `CHROMOSOMES` numbers."""
-        row = self.builder.add(number, _I64(offset))
-        return self.builder.mul(row, _I64(CHROMOSOMES))
-
-    def place(self, argument: int, row: Any, column: Any) -> Any:
-        """Give the place of an element of a matrix."""
-        width = self.builder.extract_value(self.array(argument).shape, 1)
-        return self.builder.add(self.builder.mul(row, width), column)
-
-    def done(self) -> Any:
-        return self.context.get_dummy_value()
+def _row(c: Code, number: Any, offset: int = 0) -> Any:
+    """Give the place of a row of `CHROMOSOMES` numbers."""
+    return c.builder.mul(c.builder.add(number, I64(offset)), I64(CHROMOSOMES))
 
 
 @intrinsic
@@ -191,14 +109,14 @@ def turn(_: Any, chromosomes: Any, first: Any, column: Any, genes: Any) -> Any:
     """
 
     def code(*given: Any) -> Any:
-        c = _Code(*given)
+        c = Code(*given)
         n, shuffle = CHROMOSOMES, c.builder.shuffle_vector
         first, column = c.args[1:3]
         rows = []
         for i in range(n):
-            row = c.builder.add(first, _I64(i))
+            row = c.builder.add(first, I64(i))
             rows.append(c.load(0, c.place(0, row, column), n).value)
-        for bit in (1, 2, 4, 8):
+        for bit in [2**k for k in range(n.bit_length() - 1)]:
             low = ir.Constant(rows[0].type, [j + (n - bit if j & bit else 0) for j in range(n)])
             high = ir.Constant(rows[0].type, [j + (n if j & bit else bit) for j in range(n)])
             for i in range(n):
@@ -206,7 +124,7 @@ def turn(_: Any, chromosomes: Any, first: Any, column: Any, genes: Any) -> Any:
                     a, b = rows[i], rows[i + bit]
                     rows[i], rows[i + bit] = shuffle(a, b, low), shuffle(a, b, high)
         for i, row in enumerate(rows):
-            c.store(_Vector(c.builder, row), 3, c.row(column, i))
+            c.store(Vector(c.builder, row), 3, _row(c, column, i))
         return c.done()
 
     return types.void(chromosomes, types.int64, types.int64, genes), code
@@ -214,7 +132,15 @@ def turn(_: Any, chromosomes: Any, first: Any, column: Any, genes: Any) -> Any:
 
 @intrinsic
 def place_way_points(
-    _: Any, genes: Any, gene: Any, points: Any, point: Any, rounding: Any, a: Any, b: Any, c: Any
+    _: Any,
+    genes: Any,
+    gene: Any,
+    points: Any,
+    point: Any,
+    rounding: Any,
+    first: Any,
+    second: Any,
+    third: Any,
 ) -> Any:
     """Compute one coordinate of a way point: `gapath.kernels.bspline.way_point`.
 
@@ -228,18 +154,18 @@ def place_way_points(
         Coordinates, one a row.
     point : int
         The row to overwrite.
-    rounding, a, b, c : float
+    rounding, first, second, third : float
         What to add, and the weights of the three genes.
     """
 
     def code(*given: Any) -> Any:
-        c = _Code(*given)
+        c = Code(*given)
         shift = 2 * COORDINATE_LIMIT
-        total = c.all_lanes(4, CHROMOSOMES, _F64) + float(shift)
+        total = c.all_lanes(4, CHROMOSOMES, F64) + float(shift)
         for k in range(3):
-            coordinate = c.load(0, c.row(c.args[1], 2 * k), CHROMOSOMES).real()
-            total += coordinate * c.all_lanes(5 + k, CHROMOSOMES, _F64)
-        c.store(total.whole() - shift, 2, c.row(c.args[3]))
+            coordinate = c.load(0, _row(c, c.args[1], 2 * k), CHROMOSOMES).real()
+            total += coordinate * c.all_lanes(5 + k, CHROMOSOMES, F64)
+        c.store(total.whole() - shift, 2, _row(c, c.args[3]))
         return c.done()
 
     reals = [types.float64] * 4
@@ -267,11 +193,11 @@ def join_way_points(
     """
 
     def code(*given: Any) -> Any:
-        c = _Code(*given)
-        point = c.builder.mul(c.args[1], _I64(2))
-        line = c.builder.mul(c.args[1], _I64(LINE))
+        c = Code(*given)
+        point = c.builder.mul(c.args[1], I64(2))
+        line = c.builder.mul(c.args[1], I64(LINE))
         rows, cols = (c.all_lanes(k, CHROMOSOMES) for k in (4, 5))
-        x0, y0, x1, y1 = (c.load(0, c.row(point, k), CHROMOSOMES) for k in range(4))
+        x0, y0, x1, y1 = (c.load(0, _row(c, point, k), CHROMOSOMES) for k in range(4))
 
         dx, dy = x1 - x0, y1 - y0
         tall = dx.size() < dy.size()
@@ -283,12 +209,12 @@ def join_way_points(
         shift = 2 << FRACTION
         coarse = (slope * 2.0 ** (FRACTION - SHIFT) + float(shift)).whole() - (shift - 1)
 
-        c.store(slope, 3, c.row(c.args[1]))
-        c.store(leaves.choose(steps.negative(), steps), 2, c.row(line, STEPS))
-        c.store((longer < 0).choose(stride.negative(), stride), 2, c.row(line, ALONG))
-        c.store(cols + 1 - stride, 2, c.row(line, ACROSS))
-        c.store(coarse, 2, c.row(line, SLOPE))
-        c.store(y0 * cols + x0, 2, c.row(line, BASE))
+        c.store(slope, 3, _row(c, c.args[1]))
+        c.store(leaves.choose(steps.negative(), steps), 2, _row(c, line, STEPS))
+        c.store((longer < 0).choose(stride.negative(), stride), 2, _row(c, line, ALONG))
+        c.store(cols + 1 - stride, 2, _row(c, line, ACROSS))
+        c.store(coarse, 2, _row(c, line, SLOPE))
+        c.store(y0 * cols + x0, 2, _row(c, line, BASE))
         return c.done()
 
     return types.void(points, types.int64, lines, slopes, types.int64, types.int64), code
@@ -317,10 +243,10 @@ def store_fields(
     """
 
     def code(*given: Any) -> Any:
-        c = _Code(*given)
+        c = Code(*given)
         base, along, across, part, slope = (c.all_lanes(k, FIELDS) for k in range(2, 7))
-        steps = ir.Constant(ir.VectorType(_I32, FIELDS), list(range(1, FIELDS + 1)))
-        step = _Vector(c.builder, steps)
+        steps = ir.Constant(ir.VectorType(I32, FIELDS), list(range(1, FIELDS + 1)))
+        step = Vector(c.builder, steps)
         places = base + along * step + (part + slope * step >> FRACTION) * across
         c.store(places, 0, c.args[1])
         return c.done()
@@ -352,32 +278,30 @@ def sum_entries(_: Any, flat: Any, indices: Any, count: Any) -> Any:
     """
 
     def code(*given: Any) -> Any:
-        c = _Code(*given)
+        c = Code(*given)
         builder, count = c.builder, c.args[2]
         # behind the last stands the first entry of the table, which is taken off again
-        c.store(_Vector(builder, ir.Constant(ir.VectorType(_I32, READ), [0] * READ)), 1, count)
+        c.store(Vector(builder, ir.Constant(ir.VectorType(I32, READ), [0] * READ)), 1, count)
         before = builder.block
         loop, after = builder.append_basic_block("read"), builder.append_basic_block("read_all")
         builder.branch(loop)
         builder.position_at_end(loop)
-        at, *begun = builder.phi(_I64), builder.phi(_I32), builder.phi(_I32)
+        at, *begun = builder.phi(I64), builder.phi(I32), builder.phi(I32)
         sums = list(begun)
         for k in range(READ // 2):
-            pair = builder.load(c.pointer(1, builder.add(at, _I64(2 * k)), _I64), align=4)
-            for place in (builder.and_(pair, _I64(2**32 - 1)), builder.lshr(pair, _I64(32))):
-                entry = builder.load_atomic(c.pointer(0, place, _I32), "monotonic", 4)
+            pair = builder.load(c.pointer(1, builder.add(at, I64(2 * k)), I64), align=4)
+            for place in (builder.and_(pair, I64(2**32 - 1)), builder.lshr(pair, I64(32))):
+                entry = builder.load_atomic(c.pointer(0, place, I32), "monotonic", 4)
                 sums[k % 2] = builder.add(sums[k % 2], entry)
-        following = builder.add(at, _I64(READ))
-        for phi, start, end in zip(
-            (at, *begun), (_I64, _I32, _I32), (following, *sums), strict=True
-        ):
+        following = builder.add(at, I64(READ))
+        for phi, start, end in zip((at, *begun), (I64, I32, I32), (following, *sums), strict=True):
             phi.add_incoming(start(0), before)
             phi.add_incoming(end, loop)
         builder.cbranch(builder.icmp_signed("<", following, count), loop, after)
         builder.position_at_end(after)
-        more = builder.trunc(builder.sub(following, count), _I32)
-        extra = builder.mul(more, builder.load(c.pointer(0, _I64(0), _I32)))
-        return builder.zext(builder.sub(builder.add(*sums), extra), _I64)
+        more = builder.trunc(builder.sub(following, count), I32)
+        extra = builder.mul(more, builder.load(c.pointer(0, I64(0), I32)))
+        return builder.zext(builder.sub(builder.add(*sums), extra), I64)
 
     return types.int64(flat, indices, types.int64), code
 
@@ -428,22 +352,22 @@ def vary_genes(
     """
 
     def code(*given: Any) -> Any:
-        c = _Code(*given)
+        c = Code(*given)
         gene, shift = c.args[14], 2 * COORDINATE_LIMIT
-        mixed = c.all_lanes(5, GENES, _F64) + float(shift)
+        mixed = c.all_lanes(5, GENES, F64) + float(shift)
         for parent, share in ((1, 3), (2, 4)):
             value = c.load(0, c.place(0, c.args[parent], gene), GENES).real()
-            mixed += value * c.all_lanes(share, GENES, _F64)
+            mixed += value * c.all_lanes(share, GENES, F64)
         spans, lows, least, greatest = (
-            c.load(k, c.place(k, _I64(bound), gene), GENES) for k in (10, 11) for bound in (0, 1)
+            c.load(k, c.place(k, I64(bound), gene), GENES) for k in (10, 11) for bound in (0, 1)
         )
-        word = c.load(6, c.args[7], GENES, _I64)
+        word = c.load(6, c.args[7], GENES, I64)
         mask = 2**32 - 1
-        wide = _Vector(c.builder, c.builder.zext(spans.value, word.kind))
-        upper = _Vector(c.builder, c.builder.lshr(word.value, word._like(32)))
-        drawn = _Vector(c.builder, c.builder.lshr(word.value, c.all_lanes(8, GENES, _I64).value))
+        wide = Vector(c.builder, c.builder.zext(spans.value, word.kind))
+        upper = Vector(c.builder, c.builder.lshr(word.value, word._like(32)))
+        drawn = Vector(c.builder, c.builder.lshr(word.value, c.all_lanes(8, GENES, I64).value))
         drawn = (((drawn & mask) * wide) >> 32).short() - lows
-        happens = upper < c.all_lanes(9, GENES, _I64)
+        happens = upper < c.all_lanes(9, GENES, I64)
         value = mixed.whole() - shift + happens.choose(drawn, 0)
         value = (value < least).choose(least, value)
         value = (greatest < value).choose(greatest, value)

@@ -3,8 +3,8 @@
 Each takes its random numbers as words drawn beforehand, one word for each gene, and one
 for each pair of parents: what is drawn never depends on what was drawn.
 
-Matrices have a chromosome a row, and `width` columns: what follows the last gene is there for
-whole vectors and means nothing.
+Matrices have a chromosome a row, as `gapath.kernels.lanes.chromosome_matrix` makes them: what
+follows the last gene is there for whole vectors and means nothing.
 """
 
 from typing import NamedTuple
@@ -62,12 +62,6 @@ def gene_limits(
     for bound in range(2):
         limits[bound, 0], limits[bound, 1] = ends.start_x, ends.start_y
         limits[bound, genes - 2], limits[bound, genes - 1] = ends.target_x, ends.target_y
-
-
-@kernel
-def width(genes: int) -> int:
-    """Give the columns of a matrix of chromosomes with so many genes: whole vectors of any kind."""
-    return (genes + GENES + 13) // 16 * 16
 
 
 class Mixing(NamedTuple):
@@ -214,8 +208,8 @@ def initialise(
     """
     inner = (words.shape[0] - GENES) // size
     segments = inner // 2 + 1
-    middle = np.empty((1, limits.shape[1]), dtype=np.int32)  # what a part is a change of
-    changes = np.empty((2, limits.shape[1]), dtype=np.int32)
+    middle = np.zeros((1, limits.shape[1]), dtype=np.int32)  # what a part is a change of
+    changes = np.zeros((2, limits.shape[1]), dtype=np.int32)
     i = np.int64(0)
     for part in range(3):
         for g in range(2, inner + 2):

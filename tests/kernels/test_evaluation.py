@@ -1,7 +1,8 @@
 """The fitness of many chromosomes at once against the fitness of one."""
 
+from functools import lru_cache
+
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from strategies import RULES, weights
@@ -10,14 +11,14 @@ from gapath.grid import GridMap
 from gapath.kernels.bspline import basis
 from gapath.kernels.evaluation import MOST_FIELDS, evaluate, workspace
 from gapath.kernels.fitness import OBSTACLE, fitness
-from gapath.kernels.lanes import CHROMOSOMES
-from gapath.kernels.population import width
+from gapath.kernels.lanes import chromosome_matrix
 from gapath.kernels.raster import COORDINATE_LIMIT
 
 
 def both(table, chromosomes, splines, rule):
     count, genes = chromosomes.shape
-    matrix = np.full((count + 2 + CHROMOSOMES, width(genes)), -(2**31), dtype=np.int32)
+    matrix = chromosome_matrix(count + 2, genes)
+    matrix[:] = -(2**31)
     matrix[2 : count + 2, :genes] = chromosomes
     keys = np.full(count + 3, -7, dtype=np.int64)
     memory = workspace(splines)
@@ -37,44 +38,58 @@ def draw_table(random, rows, cols):
     weights(),
     st.integers(0, 2**32 - 1),
     st.integers(1, 40),
-    st.integers(3, 9),
+    st.integers(3, 32),
+    st.integers(2, 9),
     st.sampled_from([0, 3, 60, 1000, COORDINATE_LIMIT]),
-    st.sampled_from(range(3)),
+    st.sampled_from(range(len(RULES))),
     st.booleans(),
 )
-def test_small_maps_and_genes_far_outside(values, seed, count, k, beyond, rule, per_span):
+def test_small_maps_and_genes_far_outside(values, seed, count, k, w, beyond, rule, per_span):
     table = GridMap("random", values).table
     random = np.random.default_rng(seed)
     chromosomes = random.integers(-beyond, 25 + beyond, (count, 2 * k)).astype(np.int32)
     chromosomes = chromosomes.clip(-COORDINATE_LIMIT, COORDINATE_LIMIT)
-    ours, expected = both(table, chromosomes, basis(k, 5, per_span), rule)
+    chromosomes = chromosomes[: 3 if beyond == COORDINATE_LIMIT else count]  # a second otherwise
+    ours, expected = both(table, chromosomes, basis(k, w, per_span), rule)
     assert ours == expected
 
 
-@pytest.mark.parametrize(("rows", "cols"), [(50, 100), (500, 1000), (4000, 4000), (3, 4000)])
-@pytest.mark.parametrize("rule", range(len(RULES)))
-@pytest.mark.parametrize("beyond", [0, 0.3])
-def test_large_maps(rows, cols, rule, beyond):
-    random = np.random.default_rng(rows)
-    table = draw_table(random, rows, cols)
-    chromosomes = np.empty((60, 10), dtype=np.int32)
-    for axis, side in enumerate((cols, rows)):
-        low, high = int(-beyond * side), int((1 + beyond) * side)
-        chromosomes[:, axis::2] = random.integers(low, high, (60, 5))
-    ours, expected = both(table, chromosomes, basis(5, 5, False), rule)
+@lru_cache
+def large_table(rows, cols):
+    return draw_table(np.random.default_rng(rows), rows, cols)
+
+
+@settings(max_examples=150)
+@given(
+    st.sampled_from([(50, 100), (500, 1000), (4000, 4000), (3, 4000)]),
+    st.integers(0, 2**32 - 1),
+    st.integers(3, 12),
+    st.integers(2, 64),
+    st.sampled_from([0.0, 0.3, 1.0, None]),
+    st.sampled_from(range(len(RULES))),
+    st.booleans(),
+)
+def test_large_maps(shape, seed, k, w, beyond, rule, per_span):
+    """Genes on the map, around it, and as far outside as they may lie."""
+    random, count = np.random.default_rng(seed), 2 if beyond is None else 20
+    chromosomes = np.empty((count, 2 * k), dtype=np.int32)
+    for axis, side in enumerate(reversed(shape)):
+        out = COORDINATE_LIMIT - side if beyond is None else int(beyond * side)
+        chromosomes[:, axis::2] = random.integers(-out, side + out, (count, k))
+    ours, expected = both(large_table(*shape), chromosomes, basis(k, w, per_span), rule)
     assert ours == expected
 
 
 @settings(max_examples=30)
-@given(st.integers(0, 2**32 - 1))
-def test_long_lines_of_every_slope(seed):
+@given(st.integers(0, 2**32 - 1), st.sampled_from(range(len(RULES))))
+def test_long_lines_of_every_slope(seed, rule):
     """The steepest test of the arithmetic: lines across a wide map, way points at its border."""
     random = np.random.default_rng(seed)
-    table = draw_table(random, 300, 60_000)
+    table = large_table(300, 60_000)
     chromosomes = np.empty((8, 6), dtype=np.int32)
     chromosomes[:, 0::2] = random.choice([0, 1, 29_999, 59_998, 59_999], (8, 3))
     chromosomes[:, 1::2] = random.choice([0, 1, 149, 150, 299], (8, 3))
-    ours, expected = both(table, chromosomes, basis(3, 3, False), 0)
+    ours, expected = both(table, chromosomes, basis(3, 3, False), rule)
     assert ours == expected
 
 

@@ -19,11 +19,13 @@ from gapath.kernels.lanes import (
     READ,
     SLOPE,
     STEPS,
+    chromosome_matrix,
     join_way_points,
     place_way_points,
     store_fields,
     sum_entries,
     turn,
+    width,
 )
 from gapath.kernels.raster import COORDINATE_LIMIT, SHIFT, slope
 
@@ -170,3 +172,16 @@ def test_as_many_obstacles_as_32_bits_hold():
 
 def test_genes_divide_the_columns_of_a_matrix():
     assert CHROMOSOMES % GENES == 0
+
+
+@pytest.mark.parametrize("genes", range(6, 66, 2))
+def test_a_matrix_has_whole_vectors_behind_its_genes(genes):
+    assert width(genes) % CHROMOSOMES == 0
+    last = max(range(2, genes - 2, GENES))
+    assert width(genes) >= max(last + GENES, genes)
+
+
+def test_a_matrix_of_chromosomes_can_be_read_in_whole_vectors():
+    for count, genes in ((1, 6), (40, 8), (100, 64)):
+        rows, columns = chromosome_matrix(count, genes).shape
+        assert rows >= count - 1 + CHROMOSOMES and columns == width(genes)

@@ -11,8 +11,8 @@ from gapath._jit import JIT
 from gapath.kernels.bspline import basis
 from gapath.kernels.evaluation import evaluate, evaluate_one_by_one, workspace
 from gapath.kernels.fitness import ALLOW, FORBID, NO_DIAGONALS, OBSTACLE, ONE_SIDE
-from gapath.kernels.lanes import CHROMOSOMES, GENES
-from gapath.kernels.population import Mixing, vary, vary_one_by_one, width
+from gapath.kernels.lanes import GENES, chromosome_matrix, width
+from gapath.kernels.population import Mixing, vary, vary_one_by_one
 from gapath.kernels.raster import COORDINATE_LIMIT
 from gapath.rng import probability_threshold
 
@@ -27,7 +27,7 @@ def check_evaluations(random, rows, cols):
     for beyond, count in ((0, 400), (max(rows, cols), 200), (COORDINATE_LIMIT, 5)):
         for rule in RULES:
             k = int(random.integers(3, 10))
-            chromosomes = np.zeros((count + CHROMOSOMES, width(2 * k)), dtype=np.int32)
+            chromosomes = chromosome_matrix(count, 2 * k)
             for axis, side in enumerate((cols, rows)):
                 genes = random.integers(-beyond, side + beyond, (count, k))
                 genes = genes.clip(-COORDINATE_LIMIT, COORDINATE_LIMIT)
@@ -53,11 +53,11 @@ def check_variations(random, far):
     denominator = int(random.integers(1, 1000))
     share = int(random.integers(0, denominator + 1)) / denominator
     mixing = Mixing(share, 1 - share, 0.5 + 0.25 / denominator)
-    threshold, upper = probability_threshold(random.random()), bool(random.integers(2))
+    threshold, shift = probability_threshold(random.random()), 32 * int(random.integers(2))
     found = []
     for kernel in (vary, vary_one_by_one):
         child = np.zeros((1, columns), dtype=np.int32)
-        kernel(parents, 0, 1, mixing, words, 0, upper, threshold, changes, limits, child, 0, genes)
+        kernel(parents, 0, 1, mixing, words, 0, shift, threshold, changes, limits, child, 0, genes)
         found.append(child[0, 2 : genes - 2].tolist())
     assert found[0] == found[1], (k, far, mixing)
 

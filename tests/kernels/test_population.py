@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gapath._jit import JIT
-from gapath.kernels.lanes import CHROMOSOMES, GENES
+from gapath.kernels.lanes import GENES, width
 from gapath.kernels.population import (
     Ends,
     InitialPopulation,
@@ -16,7 +16,6 @@ from gapath.kernels.population import (
     rank_best,
     vary,
     vary_one_by_one,
-    width,
 )
 from gapath.kernels.raster import COORDINATE_LIMIT
 from gapath.rng import fill, probability_threshold, stream
@@ -82,13 +81,6 @@ def test_start_and_target_have_no_choice():
     least, greatest = limits(8)[:, :8]
     assert (least[2:6] == -COORDINATE_LIMIT).all()
     assert (greatest[2:6] == COORDINATE_LIMIT).all()
-
-
-@pytest.mark.parametrize("genes", range(6, 66, 2))
-def test_a_matrix_has_whole_vectors_behind_its_genes(genes):
-    assert width(genes) % CHROMOSOMES == 0
-    last = max(range(2, genes - 2, GENES))
-    assert width(genes) >= max(last + GENES, genes)
 
 
 @pytest.fixture(params=[vary, vary_one_by_one] if JIT else [vary])
