@@ -1,6 +1,7 @@
 """Drives through KG18's four unknown maps: how long, what takes the time, what recording costs.
 
-- A drive: `compute_time_s` (looking and deciding) of each navigator, on the same drives in turn.
+- A drive: `compute_time_s` of each navigator, on the same drives in turn: looking and deciding, but
+  not what is made of a drive for its log.
   The targets on map 1 are 2 ms for kg18 and 1 ms for kg18_fast. "paper / drive" is 1.4 s, where
   the paper's axis for map 1 begins, by ours. "outside planners" is the share of kg18's time that
   its planners' `plan` did not take.

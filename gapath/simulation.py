@@ -112,7 +112,7 @@ def plan_trials(
         else:
             plans = [planner.plan(problem, random) for random in randoms]
         mean = (time.perf_counter() - begin) / len(batch)
-        return [TimedPlan(*answer, mean) for answer in zip(batch, plans, strict=True)]
+        return [TimedPlan(number, plan, mean) for number, plan in zip(batch, plans, strict=True)]
 
     pieces = batches(trials, threads, many.most_at_once if many else 1)
     for answers in in_order(work, pieces, threads):

@@ -9,7 +9,7 @@ P = TypeVar("P")
 T = TypeVar("T")
 
 AHEAD = 16
-"""So many pieces a thread may wait to be told; what a trial keeps may be up to a gigabyte."""
+"""So many pieces a thread may wait to be told: one keeps a few megabytes, or is a single trial."""
 
 
 def in_order(work: Callable[[P], T], pieces: Iterable[P], threads: int) -> Iterator[T]:

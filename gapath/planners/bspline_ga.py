@@ -108,11 +108,15 @@ class Planner:
             "settings that need at most 1 GiB",
         )
 
-    @cached_property
+    @property
     def most_at_once(self) -> int:
-        """Runs of `plan_many` whose histories take some 16 MiB, at most 64: more save nothing."""
+        """Runs of one `plan_many`, at most 64: more save nothing.
+
+        Their histories take 4 MiB at most, and they end within seconds: nobody can interrupt them.
+        """
         history = self.max_epochs * (24 + 8 * self.control_points)
-        return min(max((1 << 24) // history, 1), 64)
+        evaluated = self.max_epochs * self.population
+        return max(min((1 << 22) // history, 10**7 // evaluated, 64), 1)
 
     @cached_property
     def _basis(self) -> Basis:

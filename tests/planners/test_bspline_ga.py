@@ -83,6 +83,7 @@ def test_many_plans_in_one_call_are_those_of_many_calls():
 def test_long_histories_are_not_kept_many_at_a_time():
     assert planner(max_epochs=500).most_at_once == 64
     assert planner(max_epochs=10**6).most_at_once == 1
+    assert planner(max_epochs=500, population=10**4).most_at_once == 2  # they cannot be interrupted
 
 
 def test_it_never_stops_before_min_epochs():
