@@ -6,6 +6,7 @@ import sys
 import time
 from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from tabulate import tabulate
@@ -36,6 +37,11 @@ INDEX = "questions.csv"
 """The questions of the last run, written when all have been answered."""
 
 TARGET_COLUMNS = ("what", "target", "measured", "met")
+
+
+def question(name: str) -> ModuleType:
+    """Import a question."""
+    return import_module(f"benchmarks.questions.{name}")
 
 
 def columns(rows: list[Row]) -> list[str]:
@@ -81,7 +87,7 @@ def ask(names: list[str], quick: bool, folder: Path) -> dict[str, list[Row]]:
     for number, name in enumerate(names, 1):
         print(f"{number}/{len(names)} {name} ...", file=sys.stderr, flush=True)
         begin = time.perf_counter()
-        rows = answers[name] = import_module(f"benchmarks.{name}").measure(quick)
+        rows = answers[name] = question(name).measure(quick)
         write_csv(folder / f"{name}.csv", rows)
         print(f"\n{name}, {time.perf_counter() - begin:.1f} s\n{table(rows)}\n", flush=True)
     return answers
@@ -91,7 +97,7 @@ def write_page(folder: Path, about: Row, answers: dict[str, list[Row]]) -> None:
     """Write the page: targets, machine, every question; and what else `gapath-report` reads."""
     targets = [judge(target, answers) for target in TARGETS]
     shown = table([{name: row[name] for name in TARGET_COLUMNS} for row in targets])
-    texts = {name: str(import_module(f"benchmarks.{name}").__doc__).strip() for name in answers}
+    texts = {name: str(question(name).__doc__).strip() for name in answers}
     page = [
         f"# gapath benchmarks ({about['kind']})",
         shown,

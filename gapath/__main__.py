@@ -4,13 +4,13 @@ import gc
 
 
 def main() -> None:
-    """Run the command `gapath.cli.main`.
+    """Run the command `gapath.commands.run.main`.
 
     Modules are some hundred thousand objects, none of them garbage. To look for garbage among
     them again and again takes an eighth of a short command's time.
     """
     gc.disable()
-    from gapath.cli import main as command
+    from gapath.commands.run import main as command
 
     gc.freeze()
     gc.enable()

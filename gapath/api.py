@@ -7,8 +7,8 @@ from gapath.components import build, yaml_values
 from gapath.errors import InputError, require
 from gapath.grid import Field, GridMap
 from gapath.mapio.file import kinds
+from gapath.planning.simulation import plan_once
 from gapath.problem import CornerCutting, Particular, Plan, Planner, Problem
-from gapath.simulation import plan_once
 
 
 def load_map(path: str | Path, **settings: Any) -> GridMap:

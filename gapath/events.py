@@ -6,6 +6,7 @@ takes one for its first look and one for each step of the robot.
 """
 
 from dataclasses import dataclass, field
+from enum import IntEnum
 from typing import Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
@@ -13,6 +14,28 @@ from numpy.typing import NDArray
 
 from gapath.grid import Field
 from gapath.problem import Evolution, Graph, PlanStatus, Problem
+
+
+class Mode(IntEnum):
+    """What the robot is doing (KG18 Fig. 11)."""
+
+    EXPLORE = 0
+    """Following its current path: part B."""
+    REPLAN = 1
+    """Its current path met an obstacle: part C."""
+    RETURN = 2
+    """Going back in its footsteps: part A."""
+
+
+class Outcome(IntEnum):
+    """How a drive ended."""
+
+    REACHED = 0
+    """The robot is at the target."""
+    RETURNED = 1
+    """It came back to its start in return mode: KG18's terminal failure."""
+    OVERRAN = 2
+    """It used up its steps."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +130,7 @@ class Stepped:
     heading : int
         Where it looked: 0 (+x) to 7, clockwise with y down.
     mode : int
-        A `gapath.navigation.Mode`.
+        What it was doing.
     fields : (n, 2) int32
         Fields as (x, y) that it saw for the first time or changed.
     entries : (n,) int32
@@ -120,7 +143,7 @@ class Stepped:
     trial: int
     place: Field
     heading: int
-    mode: int
+    mode: Mode
     fields: NDArray[np.int32] = field(repr=False)
     entries: NDArray[np.int32] = field(repr=False)
     seconds: float
@@ -180,11 +203,11 @@ class PathsChanged:
 
 @dataclass(frozen=True)
 class DriveFinished:
-    """A drive ended at this step: a `gapath.driving.Outcome` and its number of steps."""
+    """A drive ended at this step: how, and after how many steps of the robot."""
 
     step: int
     trial: int
-    outcome: int
+    outcome: Outcome
     steps: int
 
 

@@ -15,8 +15,6 @@ from numpy.typing import NDArray
 
 from gapath.errors import InputError, require
 from gapath.kernels.table import fill_table
-from gapath.units import OBSTACLE as OBSTACLE
-from gapath.units import SCALE as SCALE
 
 Field: TypeAlias = tuple[int, int]
 """A field of the map as (x, y)."""

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from gapath.errors import InputError, require
 from gapath.grid import Field, GridMap, PlanningMap, nearest_free
-from gapath.rng import Stream
+from gapath.kernels import units
+from gapath.kernels.rng import Stream
 
 
 class CornerCutting(IntEnum):
@@ -22,13 +23,13 @@ class CornerCutting(IntEnum):
     A field outside the map counts as an obstacle here too.
     """
 
-    ALLOW = 0
+    ALLOW = units.ALLOW
     """Every diagonal step between free fields is allowed (KG18 sets no rule)."""
-    ONE_SIDE = 1
+    ONE_SIDE = units.ONE_SIDE
     """Not if both orthogonal neighbours are obstacles."""
-    FORBID = 2
+    FORBID = units.FORBID
     """Not if either orthogonal neighbour is an obstacle (MovingAI's rule)."""
-    NO_DIAGONALS = 3
+    NO_DIAGONALS = units.NO_DIAGONALS
     """No diagonal step at all: horizontal and vertical moves only (S04)."""
 
 
@@ -255,7 +256,7 @@ class Planner(Protocol):
         problem : Query
             Start and target on a known map.
         stream : (4,) uint64
-            A random stream, advanced in place (`gapath.rng.stream`).
+            A random stream, advanced in place (`gapath.kernels.rng.stream`).
 
         Returns
         -------

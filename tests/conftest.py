@@ -7,7 +7,9 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-sys.path.insert(0, str(Path(__file__).parent))  # naive, strategies
+TESTS = Path(__file__).parent
+# twins and strategies; the benchmarks, which are not installed
+sys.path[:0] = map(str, (TESTS, TESTS / "twins", TESTS.parent))
 
 settings.register_profile("gapath", deadline=None, derandomize=True, max_examples=100)
 settings.register_profile("many", deadline=None, max_examples=2000)
@@ -29,7 +31,7 @@ def gapath(monkeypatch, capfd, tmp_path):
 
     def call(*arguments, output=tmp_path / "out"):
         extra = [f"output={output}"] if output else []
-        from gapath import cli  # not before a test asks for it: it imports Hydra
+        from gapath.commands import run as cli  # not before a test asks for it: it imports Hydra
 
         monkeypatch.setattr(sys, "argv", ["gapath", *map(str, arguments), *extra])
         try:

@@ -7,17 +7,20 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
-from gapath import components, config, rng
+from gapath import components
 from gapath.components import yaml_values
 from gapath.errors import InputError
 from gapath.events import Recorder, RunFinished
-from gapath.experiment import execute, run_started
-from gapath.graph import shortest_path
 from gapath.grid import GridMap
-from gapath.metrics import flaw, line_length
-from gapath.plan_task import PlanTask, trial_events
+from gapath.kernels import rng
+from gapath.planning.flaw import flaw
+from gapath.planning.metrics import line_length
+from gapath.planning.shortest_path import shortest_path
+from gapath.planning.simulation import plan_once, plan_trials
 from gapath.problem import CornerCutting, Plan, Planner, PlanStatus, Problem
-from gapath.simulation import plan_once, plan_trials
+from gapath.runs import config
+from gapath.runs.experiment import execute, run_started
+from gapath.tasks.plan import PlanTask, trial_events
 
 
 def yamls(group):

@@ -11,7 +11,6 @@ from pathlib import Path
 import pytest
 import test_contract
 import yaml
-from gapath.pipelines import cli as report_cli
 from hydra import compose, initialize_config_dir
 from hydra._internal.core_plugins.basic_sweeper import BasicSweeper
 from hydra._internal.utils import get_args_parser
@@ -19,8 +18,12 @@ from hydra.core.override_parser.overrides_parser import OverridesParser
 from omegaconf import OmegaConf
 
 import gapath.planners
-from gapath import cli, components, config, log_cli
+from gapath import components
+from gapath.commands import log as log_cli
+from gapath.commands import run as cli
+from gapath.pipelines.report import cli as report_cli
 from gapath.problem import CornerCutting
+from gapath.runs import config
 
 ROOT = Path(__file__).parents[1]
 PAGES = [
@@ -118,9 +121,9 @@ def test_every_test_and_object_that_a_page_names_exists(page):
 @pytest.mark.parametrize(
     "name",
     [
-        "gapath.kernels.bspline.spline",
+        "gapath.kernels.kg18.bspline.spline",
         "gapath.kernels.nothing",
-        "pipelines.kg18.MINUTES",
+        "pipelines.papers.kg18.MINUTES",
         "tests/test_docs.py::test_of_nothing",
         "tests/none.py::test_every_name_in_the_papers_page_exists",
         "conf/planner/none.yaml",

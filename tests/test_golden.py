@@ -16,13 +16,13 @@ from mcap.reader import make_reader
 
 from gapath.api import load_map
 from gapath.components import build, yaml_values
-from gapath.config import Run
-from gapath.experiment import execute
 from gapath.grid import GridMap
 from gapath.mapio.reconstructed import CLASSES
-from gapath.plan_task import PlanTask
 from gapath.problem import Problem
 from gapath.recorders import mcap
+from gapath.runs.config import Run
+from gapath.runs.experiment import execute
+from gapath.tasks.plan import PlanTask
 
 GOLDEN = Path(__file__).parent / "golden"
 

@@ -8,7 +8,8 @@ from hypothesis import given
 from strategies import weights
 
 from gapath.errors import InputError
-from gapath.grid import MAX_SIDE, OBSTACLE, GridMap
+from gapath.grid import MAX_SIDE, GridMap
+from gapath.kernels.units import OBSTACLE
 
 
 @pytest.mark.parametrize(

@@ -14,9 +14,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath._jit import kernel
-from gapath.kernels.fitness import OBSTACLE, cuts_corner
 from gapath.kernels.graph_search import STEP_X, STEP_Y
+from gapath.kernels.jit import kernel
+from gapath.kernels.lines import cuts_corner
+from gapath.kernels.units import OBSTACLE
 
 LENGTH_BITS = 22
 MAX_FIELDS = 1 << 20

@@ -8,9 +8,10 @@ distance.
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath._jit import kernel
-from gapath.kernels.fitness import ALLOW, OBSTACLE, cuts_corner
+from gapath.kernels.jit import kernel
+from gapath.kernels.lines import cuts_corner
 from gapath.kernels.raster import HALF, SHIFT, slope
+from gapath.kernels.units import ALLOW, OBSTACLE
 
 # Headings 0 to 7 in eighths of a turn, clockwise from +x (y points down).
 HEADING_X = np.array([1, 1, 0, -1, -1, -1, 0, 1], dtype=np.int64)

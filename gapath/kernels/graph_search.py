@@ -9,9 +9,9 @@ goes first. As steps towards the target keep A*'s estimate equal, it goes on tow
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath._jit import kernel
-from gapath.kernels.fitness import ALLOW, cuts_corner
-from gapath.units import OBSTACLE
+from gapath.kernels.jit import kernel
+from gapath.kernels.lines import cuts_corner
+from gapath.kernels.units import ALLOW, OBSTACLE
 
 STRAIGHT = 1 << 20
 """Length of a straight step, in the unit of lengths."""

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath._jit import kernel
-from gapath.kernels.fitness import KEY_BITS, ONE_OBSTACLE
+from gapath.kernels.jit import kernel
+from gapath.kernels.lines import KEY_BITS, ONE_OBSTACLE
 
 EPOCHS = np.dtype([("key", np.int64), ("obstacle_sum", np.int64), ("cost_sum", np.int64)])
 """What happened in an epoch: the best individual's key, obstacle fields and cost (in units of

@@ -12,7 +12,7 @@ exact value is a multiple of 1 / (2 n), so no floor changes while 2 n**2 < 2**40
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath._jit import kernel
+from gapath.kernels.jit import kernel
 
 SHIFT = 40
 HALF = 1 << (SHIFT - 1)

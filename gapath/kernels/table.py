@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath._jit import kernel
-from gapath.units import OBSTACLE, SCALE
+from gapath.kernels.jit import kernel
+from gapath.kernels.units import OBSTACLE, SCALE
 
 
 @kernel

@@ -2,8 +2,8 @@
 
 S04's eight search spaces: the paper's are lost, all but what its Table 1 says of them: which of
 three genotypes can express a path. These are of the same classes, which a test proves
-(`gapath.row_column.express`). And a U with the start in it, for which M22 has no figure: concave
-obstacles are what it names as its weakness.
+(`gapath.survey.row_column.express`). And a U with the start in it, for which M22 has no figure:
+concave obstacles are what it names as its weakness.
 """
 
 from dataclasses import dataclass, replace

@@ -14,17 +14,18 @@ from numpy.typing import NDArray
 
 from gapath.errors import require
 from gapath.grid import GridMap
-from gapath.mapio import _known_classes, _unknown_classes, movingai
-from gapath.mapio._drawing import START, TARGET, Draw
+from gapath.mapio import movingai
+from gapath.mapio._classes import known, unknown
+from gapath.mapio._classes.drawing import START, TARGET, Draw
 
 SUFFIXES: tuple[str, ...] = ()
 
 BASE_WEIGHT = 0.5  # KG18 Sec. 2
 
-CLASSES = _known_classes.CLASSES
+CLASSES = known.CLASSES
 """Classes of KG18's known maps: how to draw the obstacles, and the seed."""
 
-UNKNOWN_CLASSES = _unknown_classes.CLASSES
+UNKNOWN_CLASSES = unknown.CLASSES
 """Classes of the maps that a robot drives through without knowing them."""
 
 
@@ -69,8 +70,8 @@ class Reader:
     instance: int
 
     def __post_init__(self) -> None:
-        known = [*CLASSES, *UNKNOWN_CLASSES]
-        require(self.map_class in known, "map.map_class", self.map_class, f"one of {known}")
+        names = [*CLASSES, *UNKNOWN_CLASSES]
+        require(self.map_class in names, "map.map_class", self.map_class, f"one of {names}")
         require(0 <= self.instance < 2**32, "map.instance", self.instance, "an integer from 0 on")
 
     def read(self) -> GridMap:

@@ -14,9 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import InputError, require
-from gapath.grid import OBSTACLE, Field, GridMap
-from gapath.kernels.fitness import ALLOW, ONE_OBSTACLE, line_key
-from gapath.mapio._drawing import MAX_DRAWS, Draw
+from gapath.grid import Field, GridMap
+from gapath.kernels.lines import ONE_OBSTACLE, line_key
+from gapath.kernels.units import ALLOW, OBSTACLE
+from gapath.mapio._classes.drawing import MAX_DRAWS, Draw
 
 SUFFIXES: tuple[str, ...] = ()
 

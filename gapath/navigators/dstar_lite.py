@@ -9,12 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from gapath.driving.navigation import Call, Decision, Query, StreamOf
+from gapath.driving.past_path import Track
 from gapath.errors import require
-from gapath.grid import SCALE, Field
+from gapath.grid import Field
 from gapath.kernels import dstar_lite as kernels
 from gapath.kernels.dstar_lite import LENGTH_BITS, MAX_FIELDS, Heuristic, Search
-from gapath.navigation import Call, Decision, Query, StreamOf
-from gapath.past_path import Track
+from gapath.kernels.units import SCALE
 from gapath.problem import Plan, PlanStatus
 
 

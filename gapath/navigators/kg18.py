@@ -11,13 +11,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from gapath.driving.navigation import Call, Decision, Path, Query, StreamOf
+from gapath.driving.past_path import simplified
 from gapath.errors import require
-from gapath.grid import SCALE, Field
+from gapath.events import Mode
+from gapath.grid import Field
 from gapath.kernels.field_of_view import remaining_cost
-from gapath.navigation import Call, Decision, Mode, Path, Query, StreamOf
-from gapath.past_path import simplified
+from gapath.kernels.rng import fill, high
+from gapath.kernels.units import SCALE
 from gapath.problem import Planner
-from gapath.rng import fill, high
 
 A, B, C, DRAW = 0, 1, 2, 3  # numbers of the parts in random streams
 

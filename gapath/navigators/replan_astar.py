@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.graph import shortest_path
+from gapath.driving.navigation import Call, Decision, Query, StreamOf
+from gapath.driving.past_path import Track
 from gapath.kernels.field_of_view import remaining_cost
-from gapath.navigation import Call, Decision, Query, StreamOf
-from gapath.past_path import Track
+from gapath.planning.shortest_path import shortest_path
 
 
 @dataclass(frozen=True)

@@ -11,12 +11,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.graph import shortest_path
+from gapath.driving.navigation import Call, Decision, Query, StreamOf
+from gapath.driving.past_path import Track
 from gapath.kernels.field_of_view import remaining_cost
-from gapath.kernels.fitness import ONE_OBSTACLE, line_key
+from gapath.kernels.lines import ONE_OBSTACLE, line_key
 from gapath.kernels.raster import polyline
-from gapath.navigation import Call, Decision, Query, StreamOf
-from gapath.past_path import Track
+from gapath.planning.shortest_path import shortest_path
 
 
 @dataclass(frozen=True)

@@ -17,12 +17,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from gapath.driving.navigation import Call, Decision, Path, Query, StreamOf
+from gapath.driving.past_path import Track
 from gapath.errors import require
-from gapath.grid import OBSTACLE, Field, Table
+from gapath.grid import Field, Table
 from gapath.kernels.field_of_view import remaining_cost
-from gapath.kernels.row_column import MAX_SIDE
-from gapath.navigation import Call, Decision, Path, Query, StreamOf
-from gapath.past_path import Track
+from gapath.kernels.s04.genotype import MAX_SIDE
+from gapath.kernels.units import OBSTACLE
 from gapath.problem import CornerCutting, Particular, Plan, Planner
 
 

@@ -13,18 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import require
-from gapath.grid import SCALE
-from gapath.kernels.bspline import Basis, basis, rasterise, way_points
-from gapath.kernels.evolution import (
-    SETTINGS,
-    EvolutionResult,
-    evaluations,
-    run_evolutions,
-)
-from gapath.kernels.fitness import KEY_BITS, ONE_OBSTACLE
 from gapath.kernels.history import fitness_history
+from gapath.kernels.kg18.bspline import Basis, basis, rasterise, way_points
+from gapath.kernels.kg18.evolution import SETTINGS, EvolutionResult, evaluations, run_evolutions
+from gapath.kernels.lines import KEY_BITS, ONE_OBSTACLE
+from gapath.kernels.rng import Stream, probability_threshold
+from gapath.kernels.units import SCALE
 from gapath.problem import Evolution, Plan, PlanStatus, Query, no_path
-from gapath.rng import Stream, probability_threshold
 
 MAX_BYTES = 1 << 30
 

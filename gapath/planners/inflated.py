@@ -6,11 +6,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gapath.grid import SCALE, Field, GridMap
-from gapath.obstacle_image import Clearance, dilate
+from gapath.grid import Field, GridMap
+from gapath.kernels.rng import Stream
+from gapath.kernels.units import SCALE
+from gapath.planning.stages import Stages
 from gapath.problem import CornerCutting, Particular, Plan, PlanStatus, Query
-from gapath.rng import Stream
-from gapath.stages import Stages
+from gapath.survey.obstacle_image import Clearance, dilate
 
 
 @dataclass(frozen=True)
@@ -20,7 +21,7 @@ class Planner(Clearance):
     Parameters
     ----------
     robot_radius, radius_unit, radius_tolerance, element, threshold
-        As of `gapath.obstacle_image.Clearance`.
+        As of `gapath.survey.obstacle_image.Clearance`.
     planner : Planner
         Plans on the map of grown obstacles; in a YAML the name of its own as ``base``, and the
         values that replace that one's.

@@ -12,15 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import require
-from gapath.grid import SCALE
-from gapath.kernels.fitness import KEY_BITS, ONE_OBSTACLE
 from gapath.kernels.history import fitness_history
+from gapath.kernels.lines import KEY_BITS, ONE_OBSTACLE
 from gapath.kernels.raster import polyline
-from gapath.kernels.row_column import MAX_SIDE
-from gapath.kernels.row_column_evolution import SETTINGS, EvolutionResult, run_evolution
+from gapath.kernels.rng import Stream, probability_threshold
+from gapath.kernels.s04.evolution import SETTINGS, EvolutionResult, run_evolution
+from gapath.kernels.s04.genotype import MAX_SIDE
+from gapath.kernels.units import SCALE
 from gapath.problem import Evolution, Plan, PlanStatus, Query, no_path
-from gapath.rng import Stream, probability_threshold
-from gapath.row_column import Frame
+from gapath.survey.row_column import Frame
 
 MAX_BYTES = 1 << 30
 

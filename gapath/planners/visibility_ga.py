@@ -12,18 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import InputError, require
-from gapath.grid import SCALE
-from gapath.kernels.visibility_evolution import (
-    SETTINGS,
-    EvolutionResult,
-    path_length,
-    run_evolution,
-)
-from gapath.kernels.visibility_graph import END, START
+from gapath.kernels.m22.evolution import SETTINGS, EvolutionResult, path_length, run_evolution
+from gapath.kernels.m22.graph import END, START
+from gapath.kernels.rng import Stream, probability_threshold
+from gapath.kernels.units import SCALE
+from gapath.planning.stages import Stages
 from gapath.problem import Evolution, Plan, PlanStatus, Query
-from gapath.rng import Stream, probability_threshold
-from gapath.stages import Stages
-from gapath.visibility_graph import Surveyor, VisibilityGraph
+from gapath.survey.visibility_graph import Surveyor, VisibilityGraph
 
 PROFILES = ("v64", "v67", "v69")
 
@@ -37,9 +32,9 @@ class Planner(Surveyor):
     Parameters
     ----------
     robot_radius, radius_unit, radius_tolerance, element, threshold
-        As of `gapath.obstacle_image.Clearance`.
+        As of `gapath.survey.obstacle_image.Clearance`.
     keypoints, corner_tolerance, push_out, resize
-        As of `gapath.visibility_graph.Surveyor`.
+        As of `gapath.survey.visibility_graph.Surveyor`.
     ga2_profile : str
         Version of the library geneticalgorithm2 whose generations these are: "v64" (up to
         6.6.0), "v67" (6.7) or "v69" (6.8 on).

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from functools import partial
 
 from gapath.errors import InputError
+from gapath.kernels.rng import Stream
+from gapath.planning.stages import Stages
 from gapath.problem import Plan, PlanStatus, Query
-from gapath.rng import Stream
-from gapath.stages import Stages
-from gapath.visibility_graph import Surveyor
+from gapath.survey.visibility_graph import Surveyor
 
 
 @dataclass(frozen=True)
@@ -17,9 +17,9 @@ class Planner(Surveyor):
     Parameters
     ----------
     robot_radius, radius_unit, radius_tolerance, element, threshold
-        As of `gapath.obstacle_image.Clearance`.
+        As of `gapath.survey.obstacle_image.Clearance`.
     keypoints, corner_tolerance, push_out, resize
-        As of `gapath.visibility_graph.Surveyor`.
+        As of `gapath.survey.visibility_graph.Surveyor`.
     informed : bool
         True for A*, False for Dijkstra.
     """

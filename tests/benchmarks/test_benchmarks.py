@@ -3,7 +3,6 @@
 import csv
 import sys
 from importlib import import_module
-from pathlib import Path
 
 import naive_row_column
 import numpy as np
@@ -13,26 +12,23 @@ from hypothesis import strategies as st
 from row_column_strategies import as_rows
 from strategies import planner, problems
 
-sys.path.insert(0, str(Path(__file__).parents[2]))  # benchmarks is not installed
-
-from benchmarks import (
-    __main__,
+from benchmarks import __main__
+from benchmarks.measure import MAPS, SETTINGS, interleave, make_planner, make_problem, quartiles
+from benchmarks.questions import (
     drives,
     exact,
     ga_run,
     logging,
     row_column,
     sweep,
-    textbook,
     threads,
     visibility,
     visibility_agreement,
     visibility_growth,
-    visibility_library,
 )
-from benchmarks.measure import MAPS, SETTINGS, interleave, make_planner, make_problem, quartiles
+from benchmarks.rivals import textbook, visibility_library
+from gapath.kernels.rng import stream
 from gapath.problem import CornerCutting, Problem
-from gapath.rng import stream
 
 
 def check_kernels(problem, ga, seeds):
@@ -114,7 +110,7 @@ def test_without_deap_the_reason_is_stated(monkeypatch):
 @pytest.fixture
 def deap():
     pytest.importorskip("deap", reason="the bench extra is not installed")
-    return import_module("benchmarks.row_column_deap")
+    return import_module("benchmarks.rivals.row_column_deap")
 
 
 def by_the_twin(problem, chromosome):

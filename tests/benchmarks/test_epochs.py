@@ -1,15 +1,13 @@
 """The libraries' genetic algorithms do as much work as gapath's, on the same fitness."""
 
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).parents[2]))  # benchmarks is not installed
-
-from benchmarks import epochs, visibility_library
 from benchmarks.measure import Quartiles, make_planner, make_problem
+from benchmarks.questions import epochs
+from benchmarks.rivals import visibility_library
 
 ABSENT = "skipped: the bench extra is not installed"
 

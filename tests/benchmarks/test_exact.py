@@ -1,17 +1,12 @@
 """The exact planners of other libraries find the same cost, or say why they are not there."""
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from strategies import problems
 
-sys.path.insert(0, str(Path(__file__).parents[2]))  # benchmarks is not installed
-
-from benchmarks import exact
+from benchmarks.questions import exact
 from gapath.grid import GridMap
 from gapath.problem import CornerCutting, PlanStatus, Problem
 

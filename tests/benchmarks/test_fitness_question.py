@@ -1,7 +1,5 @@
 """The fitness in C is gapath's wherever it may be asked, and what cannot be measured says why."""
 
-import sys
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,11 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-sys.path.insert(0, str(Path(__file__).parents[2]))  # benchmarks is not installed
-
-from benchmarks import fitness
-from gapath._jit import JIT
-from gapath.kernels.fitness import OBSTACLE
+from benchmarks.questions import fitness
+from gapath.kernels.jit import JIT
+from gapath.kernels.units import OBSTACLE
 
 pytestmark = pytest.mark.skipif(not JIT, reason="of compiled kernels")
 

@@ -1,19 +1,15 @@
 """How times grow: maps of any size pose the same problem, and every size is timed fairly."""
 
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).parents[2]))  # benchmarks is not installed
-
-from benchmarks import growth, growth_settings
 from benchmarks.measure import MAPS, SETTINGS, make_planner, make_problem
-from gapath.graph import shortest_path
+from benchmarks.questions import growth, growth_settings
+from gapath.kernels.rng import stream
+from gapath.planning.shortest_path import shortest_path
 from gapath.problem import Problem
-from gapath.rng import stream
 
 
 @pytest.mark.parametrize("name", MAPS)

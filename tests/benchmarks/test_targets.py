@@ -2,14 +2,12 @@
 
 import csv
 import sys
-from pathlib import Path
 
 import pytest
 
-sys.path.insert(0, str(Path(__file__).parents[2]))  # benchmarks is not installed
-
-from benchmarks import __main__, drives, growth_settings
+from benchmarks import __main__
 from benchmarks.measure import Quartiles
+from benchmarks.questions import drives, growth_settings
 from benchmarks.targets import TARGETS, Target, column, epochs_of, judge
 
 FEWER = Target("fewer", "exact", "<=", 2.0, column("us", map="a"), "us")

@@ -1,13 +1,8 @@
 """What tricks are worth: both ways are timed, and give the same."""
 
-import sys
-from pathlib import Path
-
 import pytest
 
-sys.path.insert(0, str(Path(__file__).parents[2]))  # benchmarks is not installed
-
-from benchmarks import tricks
+from benchmarks.questions import tricks
 
 
 def test_every_trick_is_timed_with_and_without():

@@ -8,12 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strategies import problems
 
+from gapath.driving.navigation import Query
 from gapath.errors import InputError
-from gapath.graph import shortest_path
 from gapath.grid import GridMap
-from gapath.metrics import flaw
-from gapath.navigation import Query
 from gapath.navigators.dstar_lite import Repair
+from gapath.planning.flaw import flaw
+from gapath.planning.shortest_path import shortest_path
 from gapath.problem import Problem
 
 WEIGHTS = [0.0, 0.25, 0.5, 1 / 3, 0.999, 1.0, 1.0, 1.0]

@@ -10,8 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strategies import RULES, weights
 
-from gapath.grid import OBSTACLE, GridMap
+from gapath.grid import GridMap
 from gapath.kernels.field_of_view import follow, heading_of, remaining_cost, sense
+from gapath.kernels.units import OBSTACLE
 
 
 def see(table, place, heading, layers, occlusion):

@@ -11,9 +11,11 @@ from hypothesis import strategies as st
 from skimage.graph import MCP
 from strategies import problems
 
-from gapath.graph import shortest_path
-from gapath.grid import SCALE, GridMap
-from gapath.metrics import flaw, path_metrics
+from gapath.grid import GridMap
+from gapath.kernels.units import SCALE
+from gapath.planning.flaw import flaw
+from gapath.planning.metrics import path_metrics
+from gapath.planning.shortest_path import shortest_path
 from gapath.problem import CornerCutting, PlanStatus, Problem
 
 STEPS = [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)]

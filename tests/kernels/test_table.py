@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gapath.kernels.table import fill_table
-from gapath.units import OBSTACLE, SCALE
+from gapath.kernels.units import OBSTACLE, SCALE
 
 EDGES = [0.0, 0.5, 1.0, 0.5 / SCALE, 1.5 / SCALE, np.nextafter(0.5 / SCALE, 0), np.nextafter(1, 0)]
 

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gapath.errors import InputError
-from gapath.graph import shortest_path
 from gapath.mapio.barn import Reader, inflated
 from gapath.mapio.file import kinds
+from gapath.planning.shortest_path import shortest_path
 from gapath.problem import Problem
 
 START, GOAL = [-2.25, 3.0, 1.57], [-2.25, 13.0]

@@ -3,10 +3,10 @@
 import pytest
 
 from gapath.errors import InputError
-from gapath.kernels.row_column import Genotype
+from gapath.kernels.s04.genotype import Genotype
 from gapath.mapio.drawn import SEARCH_SPACES, Reader
 from gapath.problem import Problem
-from gapath.row_column import Class, classify, express
+from gapath.survey.row_column import Class, classify, express
 
 CLASSES = {
     "s04_sp01": Class(True, False, 0),

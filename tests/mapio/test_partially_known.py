@@ -3,13 +3,14 @@
 import pytest
 from strategies import planner
 
-from gapath.driving import Outcome, Sensor, drive
-from gapath.graph import shortest_path
-from gapath.known_map import KnownMap
+from gapath.driving.drive import Sensor, drive
+from gapath.driving.known_map import KnownMap
+from gapath.driving.world import Changes
+from gapath.events import Outcome
 from gapath.mapio.rosmap import Reader
 from gapath.navigators.kg18 import Navigator
+from gapath.planning.shortest_path import shortest_path
 from gapath.problem import Problem
-from gapath.world import Changes
 
 START, TARGET = (115, 200), (258, 200)  # the corridors left and right of the unknown rooms
 

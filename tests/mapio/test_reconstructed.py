@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from strategies import planner
 
-from gapath import rng
 from gapath.errors import InputError
-from gapath.graph import shortest_path
-from gapath.kernels.visibility import link_distances
+from gapath.kernels import rng
+from gapath.kernels.links import link_distances
 from gapath.mapio.reconstructed import CLASSES, Reader, generate
+from gapath.planning.shortest_path import shortest_path
 from gapath.problem import PlanStatus, Problem
 
 INSTANCES = range(30)

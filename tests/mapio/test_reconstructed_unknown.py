@@ -5,15 +5,17 @@ import pytest
 from scipy import ndimage
 from strategies import planner
 
-from gapath.driving import Outcome, Sensor, drive
+from gapath.driving.drive import Sensor, drive
+from gapath.driving.known_map import KnownMap
+from gapath.driving.world import Changes
 from gapath.errors import InputError
-from gapath.graph import shortest_path
-from gapath.kernels.fitness import ALLOW, ONE_OBSTACLE, line_key
-from gapath.known_map import KnownMap
+from gapath.events import Outcome
+from gapath.kernels.lines import ONE_OBSTACLE, line_key
+from gapath.kernels.units import ALLOW
 from gapath.mapio.reconstructed import UNKNOWN_CLASSES, Reader, generate
 from gapath.navigators.kg18 import Navigator
+from gapath.planning.shortest_path import shortest_path
 from gapath.problem import CornerCutting, PlanStatus, Problem
-from gapath.world import Changes
 
 INSTANCES = range(30)
 SOLVABLE = ["kg18_map1", "kg18_map2", "kg18_map3", "kg18_map4"]

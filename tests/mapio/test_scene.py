@@ -7,13 +7,14 @@ import pytest
 
 from gapath.api import load_map
 from gapath.errors import InputError
-from gapath.graph import shortest_path
-from gapath.kernels.fitness import ALLOW, ONE_OBSTACLE, line_key
-from gapath.keypoints import label
+from gapath.kernels.lines import ONE_OBSTACLE, line_key
+from gapath.kernels.units import ALLOW
 from gapath.mapio import scene
 from gapath.mapio.image import Reader as ImageReader
-from gapath.obstacle_image import dilate
+from gapath.planning.shortest_path import shortest_path
 from gapath.problem import PlanStatus, Problem
+from gapath.survey.keypoints import label
+from gapath.survey.obstacle_image import dilate
 
 NUMBERS = range(1, 11)
 GROWTH = 6

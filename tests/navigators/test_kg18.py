@@ -8,14 +8,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from strategies import planner
 
-from gapath.driving import Sensor, drive
+from gapath.driving.drive import Sensor, drive
+from gapath.driving.world import Changes
 from gapath.errors import InputError
-from gapath.graph import shortest_path
-from gapath.grid import SCALE, GridMap
-from gapath.navigation import Mode
+from gapath.events import Mode
+from gapath.grid import GridMap
+from gapath.kernels.units import SCALE
 from gapath.navigators.kg18 import Navigator
+from gapath.planning.shortest_path import shortest_path
 from gapath.problem import CornerCutting, Problem
-from gapath.world import Changes
 
 STATIC = Changes(0, 1, 1)
 RULES = list(CornerCutting)

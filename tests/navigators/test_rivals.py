@@ -5,14 +5,15 @@ import pytest
 from drive_strategies import worlds
 from hypothesis import given
 
-from gapath.driving import Outcome, Sensor, drive
-from gapath.graph import shortest_path
+from gapath.driving.drive import Sensor, drive
+from gapath.driving.known_map import KnownMap
+from gapath.driving.navigation import Query
+from gapath.driving.world import Changes
+from gapath.events import Mode, Outcome
 from gapath.grid import GridMap
-from gapath.known_map import KnownMap
-from gapath.navigation import Mode, Query
 from gapath.navigators import dstar_lite, replan_astar, straight_astar
+from gapath.planning.shortest_path import shortest_path
 from gapath.problem import CornerCutting, Problem
-from gapath.world import Changes
 
 RIVALS = [dstar_lite.Navigator(), replan_astar.Navigator(), straight_astar.Navigator()]
 STATIC = Changes(0, 1, 1)

@@ -9,12 +9,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gapath.components import build, yaml_values
-from gapath.driving import Outcome, Sensor, drive
+from gapath.driving.drive import Sensor, drive
+from gapath.driving.world import Changes
 from gapath.errors import InputError
-from gapath.grid import OBSTACLE, GridMap
+from gapath.events import Outcome
+from gapath.grid import GridMap
+from gapath.kernels.units import OBSTACLE
 from gapath.navigators.straight_local import staircase, subsections
 from gapath.problem import CornerCutting, Problem
-from gapath.world import Changes
 
 STATIC, SENSOR = Changes(0, 1, 1), Sensor(4, False)
 places = st.tuples(st.integers(0, 60), st.integers(0, 60))

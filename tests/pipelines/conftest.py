@@ -15,6 +15,8 @@ from gapath.events import (
     Called,
     DriveFinished,
     Evolved,
+    Mode,
+    Outcome,
     RunFinished,
     RunStarted,
     Stepped,
@@ -181,12 +183,14 @@ def write_drive_log(folder: Path, grid: GridMap, drives: pd.DataFrame) -> None:
                 recorder.record(call)
             recorder.record(
                 Stepped(
-                    step, row.trial, (x, y), 0, 0, np.array([[x, y]], dtype=np.int32),
+                    step, row.trial, (x, y), 0, Mode.EXPLORE, np.array([[x, y]], dtype=np.int32),
                     np.array([5], dtype=np.int32), 1e-4,
                 )
             )  # fmt: skip
             step += 1
-        recorder.record(DriveFinished(step - 1, row.trial, 0 if row.reached else 1, len(path) - 1))
+        recorder.record(
+            DriveFinished(step - 1, row.trial, Outcome(int(not row.reached)), len(path) - 1)
+        )
     recorder.record(RunFinished(step, len(drives), int(drives["reached"].sum())))
     recorder.close()
 

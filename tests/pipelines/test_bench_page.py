@@ -1,20 +1,19 @@
 """The page of the benchmarks, from what `python -m benchmarks` writes."""
 
 import sys
-from pathlib import Path
 
 import pandas as pd
 import pytest
-from gapath.pipelines import bench_figure_map_size, bench_figure_settings
-from gapath.pipelines.bench import make_bench_page
-from gapath.pipelines.cli import main
+
+from benchmarks import __main__
+from benchmarks.measure import MAPS, SETTINGS, Quartiles
+from benchmarks.questions import drives, exact, growth, growth_settings, visibility
+from gapath.pipelines.bench import figure_map_size as bench_figure_map_size
+from gapath.pipelines.bench import figure_settings as bench_figure_settings
+from gapath.pipelines.report.bench import make_bench_page
+from gapath.pipelines.report.cli import main
 
 from .test_report import Page
-
-sys.path.insert(0, str(Path(__file__).parents[2]))  # benchmarks is not installed
-
-from benchmarks import __main__, drives, exact, growth, growth_settings, visibility
-from benchmarks.measure import MAPS, SETTINGS, Quartiles
 
 GROWTH = [
     {

@@ -4,27 +4,24 @@ import numpy as np
 import pandas as pd
 import pytest
 import yaml
-from gapath.pipelines import (
-    figure_drive_paths,
-    figure_drive_ratios,
-    figure_drive_times,
-    table_drive_calls,
-    table_drive_choices,
-    table_drive_classes,
-    table_drives,
-    table_drives_overview,
-)
-from gapath.pipelines.collect import collect
-from gapath.pipelines.drive_summary import over_instances, summarise_drives
-from gapath.pipelines.report import make_report
-from gapath.pipelines.runs import find_runs
-from gapath.pipelines.statistics import wilson
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gapath.driving import Outcome
 from gapath.errors import InputError
-from gapath.events import Called, RunStarted, Stepped
+from gapath.events import Called, Outcome, RunStarted, Stepped
+from gapath.pipelines.kg18.drives import figure_paths as figure_drive_paths
+from gapath.pipelines.kg18.drives import figure_ratios as figure_drive_ratios
+from gapath.pipelines.kg18.drives import figure_times as figure_drive_times
+from gapath.pipelines.kg18.drives import table as table_drives
+from gapath.pipelines.kg18.drives import table_calls as table_drive_calls
+from gapath.pipelines.kg18.drives import table_choices as table_drive_choices
+from gapath.pipelines.kg18.drives import table_classes as table_drive_classes
+from gapath.pipelines.numbers.drive_summary import over_instances, summarise_drives
+from gapath.pipelines.numbers.statistics import wilson
+from gapath.pipelines.reading.collect import collect
+from gapath.pipelines.reading.runs import find_runs
+from gapath.pipelines.report.report import make_report
+from gapath.pipelines.sweeps import table_drives as table_drives_overview
 from gapath.problem import PlanStatus, Problem
 from gapath.recorders.mcap import FILE, read_events
 

@@ -1,15 +1,15 @@
 import numpy as np
 import pandas as pd
 import pytest
-from gapath.pipelines import figure_convergence, figure_evaluations, figure_paths
-from gapath.pipelines.collect import collect
-from gapath.pipelines.figures import looks
-from gapath.pipelines.runs import find_runs
 from hypothesis import given
 from hypothesis import strategies as st
 
 from gapath.errors import InputError
 from gapath.events import TrialFinished
+from gapath.pipelines.kg18 import figure_convergence, figure_evaluations, figure_paths
+from gapath.pipelines.page.figures import looks
+from gapath.pipelines.reading.collect import collect
+from gapath.pipelines.reading.runs import find_runs
 from gapath.problem import PlanStatus
 
 

@@ -3,28 +3,26 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
-from gapath.pipelines import (
-    figure_m22_concave,
-    figure_m22_convergence,
-    figure_m22_paths,
-    figure_m22_pipeline,
-    m22,
-    m22_logs,
-    table_m22,
-)
-from gapath.pipelines.collect import collect
-from gapath.pipelines.report import make_report
-from gapath.pipelines.runs import find_runs
 
 from gapath.api import load_map
 from gapath.components import build, yaml_names, yaml_values
-from gapath.config import Run
 from gapath.errors import InputError
-from gapath.experiment import execute
 from gapath.mapio import scene
-from gapath.plan_task import PlanTask
+from gapath.pipelines.m22 import figure_concave as figure_m22_concave
+from gapath.pipelines.m22 import figure_convergence as figure_m22_convergence
+from gapath.pipelines.m22 import figure_paths as figure_m22_paths
+from gapath.pipelines.m22 import figure_pipeline as figure_m22_pipeline
+from gapath.pipelines.m22 import logs as m22_logs
+from gapath.pipelines.m22 import table as table_m22
+from gapath.pipelines.papers import m22
+from gapath.pipelines.reading.collect import collect
+from gapath.pipelines.reading.runs import find_runs
+from gapath.pipelines.report.report import make_report
 from gapath.problem import Problem
 from gapath.recorders import mcap
+from gapath.runs.config import Run
+from gapath.runs.experiment import execute
+from gapath.tasks.plan import PlanTask
 
 PLANNERS = {
     "visibility_ga": {},

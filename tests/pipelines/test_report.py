@@ -4,9 +4,10 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
-from gapath.pipelines.cli import main
-from gapath.pipelines.report import make_report
-from gapath.pipelines.section import find_sections
+
+from gapath.pipelines.page.section import find_sections
+from gapath.pipelines.report.cli import main
+from gapath.pipelines.report.report import make_report
 
 from .conftest import write_manifest, write_status
 

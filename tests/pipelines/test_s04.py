@@ -3,19 +3,21 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
-from gapath.pipelines import figure_s04_paths, table_s04, table_s04_sweep
-from gapath.pipelines.collect import collect
-from gapath.pipelines.runs import find_runs
-from gapath.pipelines.s04 import MAPS, RUNS, SUCCESSES, paper_successes
-from gapath.pipelines.statistics import wilson
 
 from gapath.components import build, yaml_values
-from gapath.config import Run
 from gapath.errors import InputError
-from gapath.experiment import execute
-from gapath.plan_task import PlanTask
+from gapath.pipelines.numbers.statistics import wilson
+from gapath.pipelines.papers.s04 import MAPS, RUNS, SUCCESSES, paper_successes
+from gapath.pipelines.reading.collect import collect
+from gapath.pipelines.reading.runs import find_runs
+from gapath.pipelines.s04 import figure_paths as figure_s04_paths
+from gapath.pipelines.s04 import table1 as table_s04
+from gapath.pipelines.s04 import table_sweep as table_s04_sweep
 from gapath.problem import CornerCutting, Problem
 from gapath.recorders import mcap
+from gapath.runs.config import Run
+from gapath.runs.experiment import execute
+from gapath.tasks.plan import PlanTask
 
 PERCENT = {  # as the paper prints them, by search space
     1: (100, 93.3, 93.3), 2: (0, 86.7, 100), 3: (73, 86.7, 100), 4: (53, 80, 100),

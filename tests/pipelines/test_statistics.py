@@ -2,10 +2,11 @@ import math
 
 import numpy as np
 import pytest
-from gapath.pipelines.statistics import expected_running_time, median_interval, wilson
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import binomtest
+
+from gapath.pipelines.numbers.statistics import expected_running_time, median_interval, wilson
 
 
 @given(st.integers(1, 2000).flatmap(lambda n: st.tuples(st.integers(0, n), st.just(n))))

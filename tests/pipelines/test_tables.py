@@ -2,13 +2,15 @@ import math
 
 import pandas as pd
 import pytest
-from gapath.pipelines import table1, table_classes, table_overview
-from gapath.pipelines.collect import collect
-from gapath.pipelines.kg18 import SECONDS, implied_epochs
-from gapath.pipelines.names import label, rank
-from gapath.pipelines.section import Table
-from gapath.pipelines.statistics import wilson
-from gapath.pipelines.summary import summarise, summarise_by
+
+from gapath.pipelines.kg18 import table1, table_classes
+from gapath.pipelines.numbers.statistics import wilson
+from gapath.pipelines.numbers.summary import summarise, summarise_by
+from gapath.pipelines.page.section import Table
+from gapath.pipelines.papers.kg18 import SECONDS, implied_epochs
+from gapath.pipelines.papers.names import label, rank
+from gapath.pipelines.reading.collect import collect
+from gapath.pipelines.sweeps import table_plans as table_overview
 
 
 def trials(**columns):

@@ -3,10 +3,11 @@ import shlex
 from itertools import product
 
 import pytest
-from gapath.pipelines import text
-from gapath.pipelines.command import as_sweeps
 from hypothesis import given
 from hypothesis import strategies as st
+
+from gapath.pipelines.numbers import text
+from gapath.pipelines.report.command import as_sweeps
 
 
 @pytest.mark.parametrize(

@@ -7,11 +7,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from strategies import planner, planners, problems
 
-from gapath import rng
 from gapath.errors import InputError
 from gapath.grid import GridMap
+from gapath.kernels import rng
 from gapath.mapio.reconstructed import generate
-from gapath.metrics import flaw
+from gapath.planning.flaw import flaw
 from gapath.problem import PlanStatus, Problem
 
 

@@ -12,13 +12,13 @@ from strategies import RULES, problems
 from visibility_strategies import inflated_by, make, map_of
 
 import gapath
-from gapath import rng
 from gapath.api import load_map
 from gapath.errors import InputError
 from gapath.grid import GridMap
-from gapath.metrics import flaw
-from gapath.obstacle_image import dilate
+from gapath.kernels import rng
+from gapath.planning.flaw import flaw
 from gapath.problem import PlanStatus, Problem
+from gapath.survey.obstacle_image import dilate
 
 
 @settings(max_examples=100)

@@ -12,15 +12,15 @@ from row_column_strategies import GENOTYPES, planner, planners
 from strategies import problems
 
 import gapath
-from gapath import rng
 from gapath.components import yaml_values
 from gapath.errors import InputError
 from gapath.grid import GridMap
-from gapath.kernels.row_column import MAX_SIDE, Genotype
+from gapath.kernels import rng
+from gapath.kernels.s04.genotype import MAX_SIDE, Genotype
 from gapath.mapio.drawn import SEARCH_SPACES, Reader
-from gapath.metrics import flaw
+from gapath.planning.flaw import flaw
 from gapath.problem import CornerCutting, PlanStatus, Problem
-from gapath.row_column import express
+from gapath.survey.row_column import express
 
 
 def same_as_twin(problem, ga, seed, trial):

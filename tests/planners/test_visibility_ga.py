@@ -13,14 +13,16 @@ from strategies import RULES
 from visibility_strategies import ga, make, map_of, picture_problems, search
 
 import gapath
-from gapath import rng
 from gapath.api import load_map
 from gapath.errors import InputError
-from gapath.grid import SCALE, GridMap
-from gapath.metrics import flaw, line_length
-from gapath.obstacle_image import dilate
+from gapath.grid import GridMap
+from gapath.kernels import rng
+from gapath.kernels.units import SCALE
 from gapath.planners.visibility_ga import PROFILES
+from gapath.planning.flaw import flaw
+from gapath.planning.metrics import line_length
 from gapath.problem import PlanStatus, Problem
+from gapath.survey.obstacle_image import dilate
 
 SCENES = [f"m22_scene{number:02d}" for number in range(1, 11)]
 

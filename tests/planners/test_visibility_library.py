@@ -8,26 +8,21 @@ the first population never holds the last point, that parents are distinct, that
 leaves the elite out or that a mutation between parents may reach the greater one.
 """
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).parents[2]))  # benchmarks is not installed
-
-from benchmarks.visibility_agreement import (
+from benchmarks.questions.visibility_agreement import (
     MEASURES,
     PROFILES,
-    Scene,
     agreement,
     compared,
     measure,
     ours,
     reference,
 )
-from benchmarks.visibility_library import SCENES, SETTINGS, digest, looked_up
-from gapath.kernels.visibility_evolution import path_length
+from benchmarks.rivals.visibility_library import SCENES, SETTINGS, digest, looked_up
+from benchmarks.scene import Scene
+from gapath.kernels.m22.evolution import path_length
 
 LEAST_P = 0.01
 
@@ -46,7 +41,7 @@ def test_the_library_ran_on_the_same_graph(profile, name):
     scene = kept["scenes"][name]
     assert scene["lengths_sha256"] == digest(Scene.of(name).lengths), (
         "the scene's graph is another one: export it and run the library again"
-        " (benchmarks/visibility_library.py)"
+        " (benchmarks/rivals/visibility_library.py)"
     )
     assert len(scene["f"]) == len(scene["generations"]) == len(scene["evaluations"]) >= 300
     assert max(scene["generations"]) < 200  # no run was cut off

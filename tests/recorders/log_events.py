@@ -7,10 +7,14 @@ from pathlib import Path
 
 import numpy as np
 
-from gapath.drive_events import drive_events
-from gapath.driving import Drive, Leg, Outcome
+from gapath.driving.drive import Drive, Leg
+from gapath.driving.known_map import Looks
+from gapath.driving.navigation import Call, Decision
+from gapath.driving.told import drive_events
 from gapath.events import (
     Evolved,
+    Mode,
+    Outcome,
     RunFinished,
     RunStarted,
     Surveyed,
@@ -18,8 +22,6 @@ from gapath.events import (
     TrialStarted,
 )
 from gapath.grid import GridMap
-from gapath.known_map import Looks
-from gapath.navigation import Call, Decision, Mode
 from gapath.problem import Evolution, Graph, Plan, PlanStatus, Problem
 from gapath.recorders import mcap
 

@@ -11,11 +11,11 @@ from log_events import example_drives, logged
 from matplotlib.path import Path as Polygon
 from recordings import centres, read, record, rerun_command
 
-from gapath.events import Called, DriveFinished, PathsChanged, Stepped, TrialStarted
+from gapath.events import Called, DriveFinished, Mode, Outcome, PathsChanged, Stepped, TrialStarted
 from gapath.grid import GridMap
 from gapath.kernels.field_of_view import HEADING_X, HEADING_Y, sense
 from gapath.problem import PlanStatus, Problem
-from gapath.recorders import _drive_scene
+from gapath.recorders.rerun import drive_scene
 
 
 @pytest.fixture(autouse=True)
@@ -62,7 +62,7 @@ def test_the_known_map_grows(found, events):
 
 
 def test_large_known_maps_have_fewer_pictures(tmp_path, events, monkeypatch):
-    monkeypatch.setattr(_drive_scene, "_PICTURES", 63 * 3)
+    monkeypatch.setattr(drive_scene, "_PICTURES", 63 * 3)
     record(tmp_path, events)
     shown = read(tmp_path / "trial-0.rrd")["/map/known", "SegmentationImage:buffer"]
     assert [step for step, _ in shown] == [0, 4, 8, 10]
@@ -87,7 +87,7 @@ def test_the_outline_holds_what_the_sensor_sees(heading, layers):
     table, seen = np.zeros((15, 15), dtype=np.int32), np.zeros((15, 15), dtype=np.bool_)
     news, least = np.empty((2, (layers + 1) ** 2), dtype=np.int64), np.zeros(1, dtype=np.int64)
     count = sense(table, table.copy(), seen, 7, 7, heading, layers, False, news, 0, least)
-    outline = _drive_scene._outline(layers, HEADING_X[heading], HEADING_Y[heading]) + 7.5
+    outline = drive_scene._outline(layers, HEADING_X[heading], HEADING_Y[heading]) + 7.5
     y, x = np.mgrid[0:15, 0:15]
     inside = Polygon(outline).contains_points(np.stack([x.ravel(), y.ravel()], axis=1) + 0.5)
     assert np.flatnonzero(inside).tolist() == sorted(news[0, :count].tolist())
@@ -175,7 +175,9 @@ def test_a_drive_that_knows_no_way_and_never_calls(tmp_path, events):
     run, nothing = events[0], np.empty((0, 2), dtype=np.int32)
     first = dataclasses.replace(of(events, Stepped)[0], seconds=math.nan)
     enclosed = dataclasses.replace(run, optimal_path=nothing, optimal_cost=math.inf)
-    record(tmp_path, [enclosed, TrialStarted(0, 0, 7), first, DriveFinished(0, 0, 2, 0)])
+    record(
+        tmp_path, [enclosed, TrialStarted(0, 0, 7), first, DriveFinished(0, 0, Outcome.OVERRAN, 0)]
+    )
     found = read(tmp_path / "trial-0.rrd")
     assert "| shortest | no way |" in found["/text", "TextDocument:text"][0]
     assert "The robot used up its steps" in found["/text", "TextDocument:text"][0]
@@ -217,8 +219,8 @@ def long_drive(steps=500):
             yield PathsChanged(step, 0, path, path[::-1])
         fields = np.array([[x + i - 3, y + j - 3] for i in range(4) for j in range(4)], np.int32)
         entries = grid.table[fields[:, 1], fields[:, 0]]
-        yield Stepped(step, 0, (x, y), step % 8, step // 9 % 3, fields, entries, 1e-4)
-    yield DriveFinished(steps - 1, 0, 0, steps - 1)
+        yield Stepped(step, 0, (x, y), step % 8, Mode(step // 9 % 3), fields, entries, 1e-4)
+    yield DriveFinished(steps - 1, 0, Outcome.REACHED, steps - 1)
 
 
 def test_long_drives_are_small_and_quick(tmp_path):

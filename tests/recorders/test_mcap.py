@@ -16,12 +16,13 @@ from log_events import example, example_drives, logged, plain, write
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
-from gapath.driving import Outcome
 from gapath.errors import InputError
 from gapath.events import (
     Called,
     DriveFinished,
     Evolved,
+    Mode,
+    Outcome,
     PathsChanged,
     Recorder,
     RunFinished,
@@ -32,11 +33,13 @@ from gapath.events import (
     TrialStarted,
 )
 from gapath.grid import GridMap
-from gapath.navigation import Mode
 from gapath.problem import CornerCutting, Evolution, Graph, PlanStatus, Problem
-from gapath.recorders import _cdr, _log_format, _messages, mcap, none
+from gapath.recorders import mcap, none
+from gapath.recorders.mcap import cdr
+from gapath.recorders.mcap import format as log_format
+from gapath.recorders.mcap.messages import Messages
 
-TYPES = _log_format.TYPES
+TYPES = log_format.TYPES
 OWN = "gapath_msgs/msg/"
 counts = st.integers(0, 2**63)
 int32 = st.integers(-(2**31), 2**31 - 1)
@@ -104,7 +107,7 @@ def drives(draw, grid, step, trial):
             yield PathsChanged(now, trial, draw(paths()), draw(paths()))
         seen = np.array(draw(st.lists(places, max_size=4)), dtype=np.int32).reshape(-1, 2)
         entries = draw(arrays(np.int32, len(seen), elements=st.integers(0, 1 << 24)))
-        mode, seconds = draw(st.integers(0, 2)), draw(st.floats())
+        mode, seconds = draw(st.sampled_from(Mode)), draw(st.floats())
         yield Stepped(now, trial, draw(places), draw(heading), mode, seen, entries, seconds)
 
 
@@ -135,7 +138,7 @@ def runs(draw):
         events.append(TrialStarted(step, trial, draw(counts)))
         if task == "drive":
             events += drives(draw, grid, step, trial)
-            events.append(DriveFinished(step, trial, draw(st.integers(0, 2)), draw(counts)))
+            events.append(DriveFinished(step, trial, draw(st.sampled_from(Outcome)), draw(counts)))
             continue
         if draw(st.booleans()):
             events.append(Surveyed(step, trial, draw(graphs())))
@@ -166,10 +169,10 @@ def test_events_come_back(events, flush_every):
 @settings(max_examples=60, deadline=None)
 @given(runs())
 def test_every_message_is_what_rosbags_would_write(events):
-    messages = _messages.Messages(events[0])
+    messages = Messages(events[0])
     for event in events:
         for topic, _, data in messages.records(event):
-            name = _log_format.TOPICS[topic]
+            name = log_format.TOPICS[topic]
             message = TYPES.deserialize_cdr(data, name)
             assert bytes(TYPES.serialize_cdr(message, name, little_endian=True)) == data
 
@@ -188,7 +191,7 @@ def test_path_equals_one_built_pose_by_pose(step, metres):
     ]
     name = "nav_msgs/msg/Path"
     slow = TYPES.serialize_cdr(TYPES.types[name](header, poses), name, little_endian=True)
-    assert _cdr.path_cdr(step, metres) == bytes(slow)
+    assert cdr.path_cdr(step, metres) == bytes(slow)
 
 
 @pytest.mark.parametrize("events", [example, example_drives])
@@ -249,7 +252,7 @@ def test_a_field_that_can_be_passed_never_shows_as_an_obstacle(tmp_path):
     grid = GridMap("almost", np.array([[0.0, 0.999, 1.0, 0.0]]))
     problem = Problem(grid, (0, 0), (3, 0))
     run = dataclasses.replace(run, problem=problem)
-    data = next(_messages.Messages(run).records(run)).data
+    data = next(Messages(run).records(run)).data
     assert TYPES.deserialize_cdr(data, "nav_msgs/msg/OccupancyGrid").data.tolist() == [
         0,
         99,
@@ -321,9 +324,8 @@ def test_a_foreign_reader_understands_drives(tmp_path):
 
 
 def test_outcomes_are_named_as_they_are_defined():
-    assert {o.value: o.name.lower() for o in Outcome} == dict(enumerate(_log_format.OUTCOMES))
     for name, kind in (("DriveEnd", Outcome), ("DriveStep", Mode), ("PlannerCall", PlanStatus)):
-        text = _log_format.schema({v: k for k, v in _log_format.TOPICS.items()}[OWN + name])
+        text = log_format.schema({v: k for k, v in log_format.TOPICS.items()}[OWN + name])
         for member in kind:
             assert f"uint8 {member.name}={member.value}\n" in text.decode()
 
@@ -335,8 +337,8 @@ def test_large_known_maps_are_shown_less_often(tmp_path):
     for step in range(10):
         fields = np.array([[step, 1]], dtype=np.int32)
         entries = np.array([1 << 15], dtype=np.int32)
-        events.append(Stepped(step, 0, (0, 0), 0, 0, fields, entries, 0.0))
-    events.append(DriveFinished(9, 0, 2, 9))
+        events.append(Stepped(step, 0, (0, 0), 0, Mode.EXPLORE, fields, entries, 0.0))
+    events.append(DriveFinished(9, 0, Outcome.OVERRAN, 9))
     shown = decoded(write(events, tmp_path))["/known_map"]
     assert [step for step, _ in shown] == [0, 4, 8, 9]
     assert [np.count_nonzero(np.array(known.data) == 50) for _, known in shown] == [3, 7, 11, 12]
@@ -361,7 +363,7 @@ def test_rerun_accepts_it(task, events, tmp_path):
     )  # fmt: skip
     assert checked.returncode == 0, checked.stderr
     rows = [line for line in checked.stdout.splitlines() if "/" in line and "run.mcap" not in line]
-    assert len(rows) == len(_log_format.TOPICS_OF[task])
+    assert len(rows) == len(log_format.TOPICS_OF[task])
     assert all(row.startswith("ok") for row in rows)
 
 
@@ -370,7 +372,7 @@ def test_rerun_accepts_it(task, events, tmp_path):
     [("MAX_CHUNK", 256, "in a message"), ("MAX_LOG", 4096, "in the run")],
 )
 def test_what_could_not_be_read_is_not_written(name, limit, found, tmp_path, monkeypatch):
-    monkeypatch.setattr(mcap, name, limit)
+    monkeypatch.setattr(f"gapath.recorders.mcap.log.{name}", limit)
     with pytest.raises(InputError, match=found):
         write(example(trials=99), tmp_path)
 

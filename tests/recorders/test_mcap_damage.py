@@ -14,7 +14,7 @@ from mcap.writer import CompressionType, Writer
 
 from gapath.errors import InputError
 from gapath.recorders import mcap
-from gapath.recorders._log_reader import _inflate
+from gapath.recorders.mcap.reader import _inflate
 
 
 @pytest.fixture(scope="module")

@@ -7,18 +7,18 @@ from log_events import plain
 from recordings import centres, read
 from visibility_strategies import ga, make, map_of
 
-from gapath import log_cli
-from gapath.config import Run
+from gapath.commands import log as log_cli
 from gapath.errors import InputError
 from gapath.events import Evolved, RunStarted, Surveyed, TrialFinished, TrialStarted
-from gapath.experiment import execute
-from gapath.plan_task import PlanTask
+from gapath.kernels.rng import stream
 from gapath.planners.inflated import Planner as Inflated
 from gapath.problem import PlanStatus, Problem
 from gapath.recorders import mcap, rerun
-from gapath.recorders._cdr import record
-from gapath.recorders._messages import event
-from gapath.rng import stream
+from gapath.recorders.mcap.cdr import record
+from gapath.recorders.mcap.messages import event
+from gapath.runs.config import Run
+from gapath.runs.experiment import execute
+from gapath.tasks.plan import PlanTask
 
 
 @pytest.fixture(autouse=True)

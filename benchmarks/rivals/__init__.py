@@ -1,0 +1,1 @@
+"""What gapath is measured against."""

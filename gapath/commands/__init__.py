@@ -1,0 +1,1 @@
+"""The commands: nothing but arguments and words."""

@@ -1,0 +1,181 @@
+"""The Hydra application: compose, check, run, print."""
+
+import os
+import shlex
+import sys
+import traceback
+from typing import Any, NoReturn
+
+from hydra import compose
+from hydra import main as hydra_main
+from hydra.core.global_hydra import GlobalHydra
+from hydra.core.hydra_config import HydraConfig
+from hydra.core.override_parser.overrides_parser import OverridesParser
+from hydra.errors import HydraException
+from hydra.experimental.callback import Callback
+from hydra.types import RunMode
+from omegaconf import DictConfig, OmegaConf
+from omegaconf.errors import OmegaConfBaseException
+
+from gapath.errors import InputError
+from gapath.runs.config import Run, conf_folder, make_run
+from gapath.runs.experiment import Outcome, execute
+from gapath.runs.naming import method_name
+
+BAD_INPUT, FAILED, INTERRUPTED = 2, 1, 130
+
+BAD_CONFIGURATION = (InputError, HydraException, OmegaConfBaseException)
+
+
+class JobFailed(Exception):
+    """A job failed and has said why; carries the exit code."""
+
+
+class SweepCheck(Callback):  # type: ignore[misc]
+    """Checks every job of a sweep before the first one runs."""
+
+    def on_multirun_start(self, config: DictConfig, **kwargs: object) -> None:
+        """Compose and check all jobs; exit with code 2 if any job's settings are wrong.
+
+        Hydra turns a callback's exceptions into warnings, but not an exit.
+        """
+        from hydra._internal.core_plugins.basic_sweeper import BasicSweeper
+
+        given = [f"{key}={value}" for key, value in (config.hydra.sweeper.params or {}).items()]
+        loader = GlobalHydra.instance().config_loader()
+        try:
+            parser = OverridesParser.create(config_loader=loader)
+            parsed = parser.parse_overrides([*given, *config.hydra.overrides.task])
+            for overrides in BasicSweeper.split_arguments(parsed, None)[0]:
+                config = compose("config", overrides=overrides)
+                check_used(overrides, config.task)
+                make_run(config, "")
+        except Exception as error:
+            sys.exit(complain(error))
+        # Hydra would compose every job once more, only to see whether it can be composed.
+        BasicSweeper.validate_batch_is_legal = lambda self, batch: None
+
+
+def job(config: DictConfig) -> None:
+    """Do one job: one setting and a batch of trials.
+
+    Parameters
+    ----------
+    config : DictConfig
+        As Hydra composed it.
+    """
+    hydra = HydraConfig.get()
+    sweep = hydra.mode == RunMode.MULTIRUN
+    overrides = list(hydra.overrides.task)
+    try:
+        plain: Any = OmegaConf.to_container(config)
+        check_used(overrides, config.task)
+        run = make_run(config, method_name(plain, hydra.runtime.choices))
+        outcome = execute(run, command(overrides))
+    except BAD_CONFIGURATION as error:
+        fail(complain(error), sweep)
+    except Exception:
+        traceback.print_exc()
+        fail(FAILED, sweep)
+    else:
+        try:
+            print(describe(run, outcome, short=sweep), flush=True)
+        except BrokenPipeError:  # gapath ... | head: the run is done, nobody reads on
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def check_used(overrides: list[str], task: str) -> None:
+    """Raise InputError if something was set on the command line that the task does not use."""
+    unused = {"plan": ("navigator", "drive"), "drive": ("planner",)}
+    for override in overrides:
+        key = override.partition("=")[0].lstrip("+~")
+        if key.partition(".")[0] in unused.get(task, ()):
+            other = "drive" if task == "plan" else "plan"
+            raise InputError(key, f"task={task}, which does not use it", f"task={other}")
+
+
+def command(overrides: list[str]) -> str:
+    """Give the command that does the same job, wherever its folder lies."""
+    kept = [o for o in overrides if not o.startswith(("output=", "force="))]
+    return shlex.join(["gapath", *kept])
+
+
+def fail(code: int, sweep: bool) -> NoReturn:
+    """End a job; in a sweep so that the other jobs go on.
+
+    Raises
+    ------
+    JobFailed
+        In a sweep; Hydra raises it again after the last job.
+    SystemExit
+        Otherwise.
+    """
+    if sweep:
+        raise JobFailed(code)
+    sys.exit(code)
+
+
+def complain(error: Exception) -> int:
+    """Print what is wrong with the input and give the exit code."""
+    if isinstance(error, OSError) and not isinstance(error, HydraException):
+        error = InputError(
+            "output", error.filename, f"a folder that can be written ({error.strerror})"
+        )
+    reason = str(error).partition("\nConfig search path")[0] or type(error).__name__
+    hidden = error.__cause__ if isinstance(error, HydraException) else None
+    cause = str(hidden or "").partition("\n")[0]
+    print(f"gapath: {reason}{f' ({cause})' if cause else ''}", file=sys.stderr, flush=True)
+    return BAD_INPUT
+
+
+def describe(run: Run, outcome: Outcome, short: bool) -> str:
+    """Tell how a run ended.
+
+    Parameters
+    ----------
+    run : Run
+        What was done.
+    outcome : Outcome
+        What came of it.
+    short : bool
+        One line instead of a table.
+
+    Returns
+    -------
+    str
+        Text for the terminal.
+    """
+    grid = run.problem.map
+    instance = f"#{grid.instance}" if grid.instance else ""
+    what = f"{grid.name}{instance} {run.method}"
+    if outcome.state == "skipped":
+        return f"{what}: skipped, {outcome.folder} is whole (force=true runs it again)"
+    if outcome.state == "busy":
+        return f"{what}: skipped, another process is working on {outcome.folder}"
+    rows = outcome.rows
+    if short:
+        return f"{what}: {run.task.line(rows)}, {outcome.folder}"
+    marked = f" ({grid.source})" if grid.source == "reconstructed" else ""
+    lines: dict[str, object] = {
+        "map": f"{grid.name}{instance}{marked}, {grid.cols} x {grid.rows} fields"
+    }
+    lines["navigator" if run.task.name == "drive" else "planner"] = run.method
+    lines |= run.task.summary(rows)
+    table = "\n".join(f"{name:<14}{value}" for name, value in lines.items())
+    files = "\n".join(f"  {outcome.folder / name}" for name in outcome.files)
+    return f"{table}\n\nfiles\n{files}"
+
+
+def main() -> None:
+    """Run the command ``gapath``; exits with 0, 1 (a job failed) or 2 (bad input)."""
+    os.environ["HYDRA_FULL_ERROR"] = "1"  # errors come here instead of being printed
+    try:
+        hydra_main(version_base="1.3", config_path=conf_folder(), config_name="config")(job)()
+    except JobFailed as failure:
+        sys.exit(failure.args[0])
+    except KeyboardInterrupt:
+        sys.exit(INTERRUPTED)
+    except BrokenPipeError:  # gapath --help | head
+        sys.stderr.close()
+    except Exception as error:  # a job catches its own: this is a command line that is wrong
+        sys.exit(complain(error))

@@ -1,0 +1,1 @@
+"""One drive through an unknown map: what a robot knows, sees and decides, step by step."""

@@ -1,0 +1,119 @@
+"""A drive through an unknown map, step by step: what every navigator must offer."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gapath.driving.known_map import KnownMap
+from gapath.events import Mode
+from gapath.grid import Field
+from gapath.kernels.rng import Stream
+from gapath.problem import CornerCutting, Plan
+
+Path = NDArray[np.int32]
+
+StreamOf = Callable[[int, int], Stream]
+"""The random stream of one call within a step: (part, index) -> stream."""
+
+
+class Query(NamedTuple):
+    """What a navigator asks a planner: from the robot's field, on what it knows."""
+
+    map: KnownMap
+    start: Field
+    target: Field
+    corner_cutting: CornerCutting
+
+
+@dataclass(frozen=True, eq=False)
+class Call:
+    """A planner was called in this step."""
+
+    part: str
+    """A, B or C (KG18 Figs 12-14)."""
+    index: int
+    """Number of the planner in its part's list."""
+    plan: Plan
+    """Its answer."""
+    adopted: bool
+    """Whether its path became the current one."""
+
+
+class Following(Protocol):
+    """State of a navigator whose robot follows a path."""
+
+    def further(self, fields: tuple[Field, ...]) -> "Following":
+        """Give the state after these next fields of the path were passed."""
+
+
+class Decision(NamedTuple):
+    """What a navigator wants to do in a step."""
+
+    place: Field
+    """The next field; the robot's own if it stands."""
+    mode: Mode
+    """What it is doing."""
+    moved: object
+    """The navigator's state after the move."""
+    stood: object
+    """Its state if the next field turns out to be blocked."""
+    calls: tuple[Call, ...] = ()
+    """The planners it called."""
+    path: Path | None = None
+    """The current path from the robot's field on, (n, 2) int32; None if it has none."""
+    past: tuple[Field, ...] = ()
+    """The way back, oldest field first, the robot's own last."""
+    fields: int = 1
+    """How many fields of the path to pass before the next decision; that comes sooner if an
+    obstacle turns up on the path. If more than one, `moved` is `Following`."""
+
+
+@runtime_checkable
+class Navigator(Protocol):
+    """What a module of `gapath.navigators` offers under the name ``Navigator``.
+
+    A frozen dataclass whose fields are the settings of its YAML file in ``conf/navigator``.
+    """
+
+    @property
+    def complete(self) -> bool:
+        """True if it reaches every target that can be reached on a map that does not change."""
+
+    def begin(self, query: Query) -> object:
+        """Give the state before the first step.
+
+        Parameters
+        ----------
+        query : Query
+            Start, target and what is known before the first look.
+
+        Returns
+        -------
+        object
+            The navigator's state.
+        """
+
+    def step(
+        self, state: object, query: Query, news: NDArray[np.int64], streams: StreamOf
+    ) -> Decision:
+        """Decide what to do next.
+
+        Parameters
+        ----------
+        state : object
+            As the step before left it.
+        query : Query
+            The robot's field, the target, and what is known now.
+        news : (n,) int64
+            Flat indices of the fields of the known map that changed since the last decision.
+        streams : callable
+            Random streams, by part and index.
+
+        Returns
+        -------
+        Decision
+            The next field and both states that may follow.
+        """

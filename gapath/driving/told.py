@@ -1,0 +1,76 @@
+"""A drive told as events."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gapath.driving.drive import Drive
+from gapath.events import Called, DriveFinished, Event, Mode, PathsChanged, Stepped, TrialStarted
+
+
+def drive_events(driven: Drive, cols: int, seed: int, trial: int, step: int) -> Iterator[Event]:
+    """Tell a drive as events.
+
+    Parameters
+    ----------
+    driven : Drive
+        The drive.
+    cols : int
+        Width of the map.
+    seed, trial : int
+        Keys of the drive's random streams.
+    step : int
+        The step at which the trial begins: that of its first look.
+
+    Yields
+    ------
+    Event
+        Its start; for each step the planners called, the paths if they changed, the step
+        itself; its end.
+    """
+    yield TrialStarted(step, trial, seed)
+    path = past = np.empty((0, 2), dtype=np.int32)
+    for i, frame in enumerate(driven.frames):
+        now, decision = step + i, frame.decision
+        mode = Mode.EXPLORE
+        if decision is not None:
+            mode = decision.mode
+            for call in decision.calls:
+                plan = call.plan
+                yield Called(
+                    now,
+                    trial,
+                    call.part,
+                    call.index,
+                    call.adopted,
+                    plan.status,
+                    plan.cost,
+                    plan.epochs,
+                    plan.evaluations,
+                    plan.expansions,
+                    plan.path,
+                )
+            new_path = path[:0] if decision.path is None else decision.path
+            new_past = np.array(decision.past, dtype=np.int32).reshape(-1, 2)
+            if not _continues(path, new_path) or not _extends(past, new_past):
+                yield PathsChanged(now, trial, new_path, new_past)
+            path, past = new_path, new_past
+        fields = np.stack([frame.news % cols, frame.news // cols], axis=1).astype(np.int32)
+        entries = frame.entries.astype(np.int32)
+        yield Stepped(now, trial, frame.place, frame.heading, mode, fields, entries, frame.seconds)
+    steps = len(driven.frames) - 1
+    yield DriveFinished(step + steps, trial, driven.outcome, steps)
+
+
+def _continues(before: NDArray[np.int32], now: NDArray[np.int32]) -> bool:
+    """Tell whether a path is what is left of another."""
+    return len(before) - len(now) in (0, 1) and np.array_equal(
+        before[len(before) - len(now) :], now
+    )
+
+
+def _extends(before: NDArray[np.int32], now: NDArray[np.int32]) -> bool:
+    """Tell whether a past path is another, longer or shorter by at most one field."""
+    shared = min(len(before), len(now))
+    return abs(len(before) - len(now)) <= 1 and np.array_equal(before[:shared], now[:shared])

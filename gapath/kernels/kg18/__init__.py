@@ -1,0 +1,1 @@
+"""The kernels of KG18: B-splines, fitness, operators, evolution."""

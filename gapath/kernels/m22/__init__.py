@@ -1,0 +1,1 @@
+"""The kernels of M22: the visibility graph, operators, evolution."""

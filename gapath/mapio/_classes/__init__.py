@@ -1,0 +1,1 @@
+"""Generators of KG18's map classes."""

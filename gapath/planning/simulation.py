@@ -1,0 +1,145 @@
+"""Planning queries, trial by trial, and their times."""
+
+import math
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from gapath.kernels.rng import stream
+from gapath.planning.flaw import flaw
+from gapath.planning.shortest_path import shortest_path
+from gapath.planning.threads import in_order
+from gapath.problem import Batching, Plan, Planner, PlanStatus, Problem
+
+
+@dataclass(frozen=True, eq=False)
+class TimedPlan:
+    """A planner's answer and the time that it took.
+
+    Parameters
+    ----------
+    number : int
+        The trial's number within its run.
+    plan : Plan
+        The answer.
+    plan_time_s : float
+        Wall time of the planner's call in seconds; NaN if it was not called.
+    """
+
+    number: int
+    plan: Plan
+    plan_time_s: float
+
+
+def plan_once(problem: Problem, planner: Planner, seed: int, trial: int = 0) -> Plan:
+    """Plan with the random stream of one trial.
+
+    Parameters
+    ----------
+    problem : Problem
+        Start and target on a known map.
+    planner : Planner
+        Any planner.
+    seed, trial : int
+        Keys of the random stream.
+
+    Returns
+    -------
+    Plan
+        The answer; INFEASIBLE without calling the planner if the target is walled in.
+
+    Raises
+    ------
+    RuntimeError
+        If the planner returns a path that is none.
+    """
+    if shortest_path(problem).status is PlanStatus.INFEASIBLE:
+        return Plan(PlanStatus.INFEASIBLE)
+    plan = planner.plan(problem, stream(seed, trial))
+    _check(problem, plan, seed, trial)
+    return plan
+
+
+def _check(problem: Problem, plan: Plan, seed: int, trial: int) -> None:
+    if plan.feasible and (wrong := flaw(problem, plan.path, plan.cost)):
+        raise RuntimeError(f"the planner's path for seed {seed}, trial {trial}: {wrong}")
+
+
+def plan_trials(
+    problem: Problem, optimum: Plan, planner: Planner, seed: int, trials: int, threads: int = 1
+) -> Iterator[TimedPlan]:
+    """Plan with the random streams (seed, 0) to (seed, trials - 1).
+
+    Parameters
+    ----------
+    problem : Problem
+        Start and target on a known map.
+    optimum : Plan
+        A shortest path; if there is none, the planner is not called.
+    planner : Planner
+        Any planner.
+    seed, trials : int
+        Keys of the random streams.
+    threads : int
+        Threads that plan. With more than one a trial's time may hold a wait for another, and
+        where the planner plans batches each trial has its batch's mean time.
+
+    Yields
+    ------
+    TimedPlan
+        In order. Each depends on the seed and its own number alone.
+
+    Raises
+    ------
+    RuntimeError
+        If the planner returns a path that is none.
+    """
+    if optimum.status is PlanStatus.INFEASIBLE:
+        for number in range(trials):
+            yield TimedPlan(number, Plan(PlanStatus.INFEASIBLE), math.nan)
+        return
+    planner.plan(problem, stream(seed, 0))  # compiles the kernels before the clock runs
+
+    many = planner if threads > 1 and isinstance(planner, Batching) else None
+
+    def work(batch: range) -> list[TimedPlan]:
+        randoms = [stream(seed, number) for number in batch]
+        begin = time.perf_counter()
+        if many:
+            plans = many.plan_many(problem, np.array(randoms))
+        else:
+            plans = [planner.plan(problem, random) for random in randoms]
+        mean = (time.perf_counter() - begin) / len(batch)
+        return [TimedPlan(number, plan, mean) for number, plan in zip(batch, plans, strict=True)]
+
+    pieces = batches(trials, threads, many.most_at_once if many else 1)
+    for answers in in_order(work, pieces, threads):
+        for answer in answers:
+            _check(problem, answer.plan, seed, answer.number)
+            yield answer
+
+
+def batches(trials: int, threads: int, most: int) -> Iterator[range]:
+    """Divide trials into batches, the last ones small, so that all threads end at about one time.
+
+    Parameters
+    ----------
+    trials : int
+        How many trials.
+    threads : int
+        Threads that take batches, one after the other.
+    most : int
+        Trials of the largest batch.
+
+    Yields
+    ------
+    range
+        Numbers of trials, in order.
+    """
+    begin = 0
+    while begin < trials:
+        size = min(max((trials - begin) // (4 * threads), 1), most)
+        yield range(begin, begin + size)
+        begin += size

@@ -1,0 +1,162 @@
+"""What a log looks like: its limits, topics and message definitions.
+
+Standard messages are what other people's viewers draw; messages of our own package
+``gapath_msgs`` hold the numbers exactly, and only they are read back.
+"""
+
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+PROFILE, LIBRARY = "ros2", "gapath"
+"""What the file's header says: its conventions, and who wrote it."""
+
+MAX_CHUNK = 1 << 28
+"""Bytes that one chunk may inflate to: 256 MiB, a run of a million epochs."""
+
+MAX_LOG = 1 << 34
+"""Bytes that all chunks of a log may inflate to: 16 GiB."""
+
+NS_PER_STEP = 1_000_000
+"""Log time is the step index: a step counts as one millisecond."""
+
+FRAME = "map"
+"""The metric frame of every standard message (REP 105)."""
+
+_OWN = {
+    "gapath_msgs/msg/TrialStart": """\
+# A trial begins. Its random streams are keyed by (seed, trial, call).
+uint64 trial
+uint64 seed
+string planner
+string settings           # the run's resolved configuration, YAML
+""",
+    "gapath_msgs/msg/GaRun": """\
+# A genetic algorithm ran: one row an epoch, rows one after another.
+uint64 trial
+uint64 call               # number of this run within its trial
+uint32 genes              # columns of chromosomes
+uint32 way_points_count   # way points in a row of way_points
+int32[] chromosomes       # the best individual
+int32[] way_points        # of the best individual: x, y, x, y, ... [fields]
+float64[] best            # fitness of the best individual
+float64[] mean            # mean fitness of the population
+string genotype           # what the genes mean
+""",
+    "gapath_msgs/msg/Graph": """\
+# What a planner made of the map before it searched; the same in every trial of a run.
+uint64 trial
+uint32 rows               # of the picture of obstacles, in blocks
+uint32 cols
+uint32 block              # fields of the map, along a side, that are one block
+uint8[] obstacles         # grown by the robot's radius: 8 blocks a byte, row by row, high bit first
+int32[] points            # x, y, x, y, ... [fields]: the start, the target, the keypoints
+int32[] edges             # i, j, i, j, ...: points that a free line joins
+""",
+    "gapath_msgs/msg/Result": """\
+# A trial ended.
+uint8 FOUND=0
+uint8 NOT_FOUND=1
+uint8 INFEASIBLE=2
+uint64 trial
+uint64 epochs
+uint64 evaluations        # chromosomes whose fitness was computed
+uint64 expansions         # fields that a graph search expanded
+float64 cost              # sum of the weights of the path's fields
+uint8 status
+bool feasible             # status is FOUND
+int32[] path              # x, y, x, y, ... [fields]; empty without a path
+""",
+    "gapath_msgs/msg/DriveStep": """\
+# A robot looked around and moved, or stood (the first look of a drive: stood).
+uint8 EXPLORE=0
+uint8 REPLAN=1
+uint8 RETURN=2
+uint64 trial
+int32 x                   # the robot's field after the step
+int32 y
+uint8 heading             # where it looked: 0 (+x) to 7, clockwise with y down
+uint8 mode
+int32[] fields            # seen for the first time or changed: x, y, x, y, ... [fields]
+int32[] entries           # their weights in units of 1 / 65536; 16777216: an obstacle
+""",
+    "gapath_msgs/msg/PlannerCall": """\
+# A navigator called a planner in this step, before the robot moved.
+uint8 FOUND=0
+uint8 NOT_FOUND=1
+uint8 INFEASIBLE=2
+uint64 trial
+uint64 epochs
+uint64 evaluations        # chromosomes whose fitness was computed
+uint64 expansions         # fields that a graph search expanded
+float64 cost              # sum of the weights of the path's fields on the known map
+uint32 index              # number of the planner in its part's list
+uint8 status
+bool adopted              # its path became the current one
+int32[] path              # x, y, x, y, ... [fields]
+string part               # A (return), B (explore) or C (replan)
+""",
+    "gapath_msgs/msg/Paths": """\
+# The path that the robot follows, or the way back, is another one from this step on.
+uint64 trial
+int32[] path              # from the robot's field on: x, y, x, y, ... [fields]; empty: none
+int32[] past              # the way back, the robot's own field last
+""",
+    "gapath_msgs/msg/DriveEnd": """\
+# A drive ended.
+uint8 REACHED=0
+uint8 RETURNED=1
+uint8 OVERRAN=2
+uint64 trial
+uint64 steps
+uint8 outcome
+""",
+    "gapath_msgs/msg/RunEnd": """\
+# The run was not interrupted.
+uint64 trials
+uint64 found              # trials that found a path, or reached the target
+""",
+}
+
+_OF_BOTH = {
+    "/map": "nav_msgs/msg/OccupancyGrid",
+    "/start": "geometry_msgs/msg/PoseStamped",
+    "/target": "geometry_msgs/msg/PoseStamped",
+    "/optimal_path": "nav_msgs/msg/Path",
+    "/log": "rcl_interfaces/msg/Log",
+    "/trial_start": "gapath_msgs/msg/TrialStart",
+    "/run_end": "gapath_msgs/msg/RunEnd",
+}
+TOPICS_OF = {
+    "plan": _OF_BOTH
+    | {
+        "/path": "nav_msgs/msg/Path",
+        "/ga_run": "gapath_msgs/msg/GaRun",
+        "/graph": "gapath_msgs/msg/Graph",
+        "/result": "gapath_msgs/msg/Result",
+    },
+    "drive": _OF_BOTH
+    | {
+        "/known_map": "nav_msgs/msg/OccupancyGrid",
+        "/pose": "geometry_msgs/msg/PoseStamped",
+        "/current_path": "nav_msgs/msg/Path",
+        "/past_path": "nav_msgs/msg/Path",
+        "/drive_step": "gapath_msgs/msg/DriveStep",
+        "/planner_call": "gapath_msgs/msg/PlannerCall",
+        "/paths": "gapath_msgs/msg/Paths",
+        "/drive_end": "gapath_msgs/msg/DriveEnd",
+    },
+}
+"""Message type of every topic of a task, in the order of the log's channels."""
+
+TOPICS = TOPICS_OF["plan"] | TOPICS_OF["drive"]
+"""Message type of every topic."""
+
+TYPES = get_typestore(Stores.ROS2_HUMBLE)
+for _name, _text in _OWN.items():
+    TYPES.register(get_types_from_msg(_text, _name))
+
+
+def schema(topic: str) -> bytes:
+    """Give the definition of a topic's messages, schema encoding ``ros2msg``."""
+    name = TOPICS[topic]
+    text = _OWN.get(name) or TYPES.generate_msgdef(name, ros_version=2)[0]
+    return text.encode()

@@ -1,0 +1,280 @@
+"""What a Rerun recording of a drive shows: two maps, the robot, paths, modes, curves."""
+
+from typing import NamedTuple
+
+import numpy as np
+import rerun as rr
+import yaml
+from numpy.typing import NDArray
+
+from gapath.events import (
+    Called,
+    DriveFinished,
+    Event,
+    Mode,
+    PathsChanged,
+    RunStarted,
+    Stepped,
+    TrialStarted,
+)
+from gapath.grid import GridMap
+from gapath.kernels.field_of_view import HEADING_X, HEADING_Y
+from gapath.kernels.units import OBSTACLE, SCALE
+from gapath.recorders.rerun.drawing import (
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    VERMILLION,
+    YELLOW,
+    centres,
+    line,
+    log_problem,
+    new_stream,
+    send_curve,
+)
+from gapath.recorders.rerun.drive_panels import layout, text
+
+TIMELINE = "step"
+
+# A mode has the colour of the part of KG18's step function that belongs to it.
+_PARTS = {"A": PURPLE, "B": GREEN, "C": VERMILLION}
+_MODES = {Mode.EXPLORE: GREEN, Mode.REPLAN: VERMILLION, Mode.RETURN: PURPLE}
+
+WAY_BACK = (130, 65, 130)
+"""A darker purple: the robot's trail and A's paths lie over it."""
+
+_PICTURES = 1 << 24
+"""Bytes of all pictures of the known map: one a step where they fit, else one every few."""
+
+
+class _Drive(NamedTuple):
+    """A drive's events by kind, and the index of each one's step within the drive."""
+
+    run: RunStarted
+    trial: TrialStarted
+    steps: list[Stepped]
+    calls: list[Called]
+    changes: list[PathsChanged]
+    finished: DriveFinished
+
+    def time(self, events: list[Stepped] | list[Called] | list[PathsChanged]) -> NDArray[np.int64]:
+        return np.array([event.step - self.trial.step for event in events], dtype=np.int64)
+
+
+def recording(run: RunStarted, events: list[Event]) -> bytes:
+    """Make the recording of one drive.
+
+    Parameters
+    ----------
+    run : RunStarted
+        What the run's trials share.
+    events : list of Event
+        The drive's, from its `TrialStarted` to its `DriveFinished`.
+
+    Returns
+    -------
+    bytes
+        A whole ``.rrd`` file with its blueprint; equal in content, not in bytes, for equal
+        events.
+    """
+    trial, finished = events[0], events[-1]
+    assert isinstance(trial, TrialStarted) and isinstance(finished, DriveFinished)
+    steps = [event for event in events if isinstance(event, Stepped)]
+    calls = [event for event in events if isinstance(event, Called)]
+    changes = [event for event in events if isinstance(event, PathsChanged)]
+    drive = _Drive(run, trial, steps, calls, changes, finished)
+    timed = not all(np.isnan(step.seconds) for step in steps)
+    stream = new_stream(run, trial)
+    memory = stream.memory_recording()
+    stream.send_blueprint(layout(run.problem.map, TIMELINE, timed), make_active=False)
+    stream.send_recording_name(f"{run.problem.map.name} {run.planner} trial {trial.trial}")
+    settings = yaml.safe_load(run.settings)["drive"]
+    _log_true_map(stream, run.problem.map)
+    log_problem(stream, run, 2)
+    _send_known_map(stream, drive)
+    _send_robot(stream, drive, settings["sensor"]["range"])
+    _send_paths(stream, drive)
+    _send_calls(stream, drive)
+    _send_modes(stream, drive)
+    time = [rr.TimeColumn(TIMELINE, sequence=drive.time(steps))]
+    left = _cost_left(run, events, settings["unknown_weight"])
+    send_curve(stream, "cost/left", time, left, "cost left", ORANGE)
+    if timed:
+        seconds = np.array([step.seconds for step in steps])
+        send_curve(stream, "time/step", time, 1000 * seconds, "milliseconds", GREY)
+    stream.log("text", text(run, trial, calls, finished), static=True)
+    content: bytes = memory.drain_as_bytes()
+    stream.disconnect()
+    return content
+
+
+def _log_true_map(stream: rr.RecordingStream, grid: GridMap) -> None:
+    """Log the map that the robot does not know: dark blue, obstacles a little brighter."""
+    weights = grid.weights[:, :, np.newaxis] ** 2
+    stream.log("map", rr.Image((weights * (62, 74, 130)).astype(np.uint8)), static=True)
+
+
+def _send_known_map(stream: rr.RecordingStream, drive: _Drive) -> None:
+    """Send the known map as pictures of classes: 0 unknown, else 1 + the weight in per cent."""
+    grid = drive.run.problem.map
+    classes = [rr.AnnotationInfo(0, color=(0, 0, 0, 0))]
+    for per_cent in range(101):  # as in the recordings of plans, but black would look unknown
+        level = 40 + round(0.02 * per_cent**2)
+        classes.append(rr.AnnotationInfo(1 + per_cent, color=(level, level, level)))
+    stream.log("map/known", rr.AnnotationContext(classes), static=True)
+    size = rr.components.ImageFormat(
+        width=grid.cols, height=grid.rows, color_model="L", channel_datatype="U8"
+    )
+    look = rr.SegmentationImage.from_fields(format=size, opacity=1.0, draw_order=1)
+    stream.log("map/known", look, static=True)
+
+    known = np.zeros(grid.weights.shape, dtype=np.uint8)
+    ends = np.array([drive.run.problem.start, drive.run.problem.target])
+    known[ends[:, 1], ends[:, 0]] = _classes(grid.table[ends[:, 1], ends[:, 0]])
+    every = -(-len(drive.steps) * known.size // _PICTURES)
+    last, pictures, shown = len(drive.steps) - 1, [], []
+    for i, step in enumerate(drive.steps):
+        known[step.fields[:, 1], step.fields[:, 0]] = _classes(step.entries)
+        if i % every == 0 or i == last:
+            pictures.append(known.tobytes())
+            shown.append(step)
+    time = [rr.TimeColumn(TIMELINE, sequence=drive.time(shown))]
+    stream.send_columns("map/known", time, rr.SegmentationImage.columns(buffer=pictures))
+
+
+def _classes(entries: NDArray[np.int32]) -> NDArray[np.uint8]:
+    per_cent = np.minimum(100 * entries.astype(np.int64) // SCALE, 99)
+    classes: NDArray[np.uint8] = np.where(entries >= OBSTACLE, 101, 1 + per_cent).astype(np.uint8)
+    return classes
+
+
+def _send_robot(stream: rr.RecordingStream, drive: _Drive, layers: int) -> None:
+    """Send where the robot is and was, where it looks, and what it sees."""
+    time = [rr.TimeColumn(TIMELINE, sequence=drive.time(drive.steps))]
+    places = centres(np.array([step.place for step in drive.steps]))
+    before = np.concatenate([places[:1], places[:-1]])
+    headings = np.array([step.heading for step in drive.steps])
+    forward = np.stack([HEADING_X[headings], HEADING_Y[headings]], axis=1).astype(np.float32)
+
+    point = rr.Points2D.from_fields(colors=[YELLOW], radii=[rr.Radius.ui_points(6)], draw_order=29)
+    stream.log("map/robot", point, static=True)
+    stream.send_columns("map/robot", time, rr.Points2D.columns(positions=places))
+    arrow = rr.Arrows2D.from_fields(
+        colors=[YELLOW], radii=[rr.Radius.ui_points(1.5)], draw_order=28
+    )
+    stream.log("map/robot/heading", arrow, static=True)
+    ahead = 2.5 * forward
+    arrows = rr.Arrows2D.columns(origins=places, vectors=ahead)
+    stream.send_columns("map/robot/heading", time, arrows)
+    # A piece of the trail at each step; the view shows all of them up to its time.
+    stream.log("map/trail", line(YELLOW, 1.5, draw_order=26), static=True)
+    pieces = np.stack([before, places], axis=1)
+    stream.send_columns("map/trail", time, rr.LineStrips2D.columns(strips=list(pieces)))
+    # It looks before it moves.
+    stream.log("map/field_of_view", line(YELLOW, 1, draw_order=23), static=True)
+    views = [_outline(layers, *ahead) + place for ahead, place in zip(forward, before, strict=True)]
+    stream.send_columns("map/field_of_view", time, rr.LineStrips2D.columns(strips=views))
+
+
+def _outline(layers: int, x: float, y: float) -> NDArray[np.float32]:
+    """Give the border of what is seen in a direction, around the robot's field's centre."""
+    far = layers + 0.5
+    if x and y:  # a square, which the robot's field is the corner of
+        corners = [(-0.5, -0.5), (far, -0.5), (far, far), (-0.5, far), (-0.5, -0.5)]
+        return np.array([(x * u, y * v) for u, v in corners], dtype=np.float32)
+    sides = [(u, v + 0.5) for v in range(layers + 1) for u in (v - 0.5, v + 0.5)]
+    corners = [*sides, *((u, -v) for u, v in reversed(sides)), sides[0]]
+    return np.array([(x * u - y * v, y * u + x * v) for u, v in corners], dtype=np.float32)
+
+
+def _send_paths(stream: rr.RecordingStream, drive: _Drive) -> None:
+    """Send the current path and the way back as they are when they change."""
+    paths = [event.path for event in drive.changes]
+    pasts = [event.past for event in drive.changes]
+    steps = drive.time(drive.changes)
+    stream.log("map/current_path", line(ORANGE, 3, draw_order=25), static=True)
+    _send_strips(stream, "map/current_path", steps, [[path] for path in paths])
+    stream.log("map/past_path", line(WAY_BACK, 7, draw_order=22), static=True)
+    _send_strips(stream, "map/past_path", steps, [[path] for path in pasts])
+
+
+def _send_strips(
+    stream: rr.RecordingStream,
+    entity: str,
+    steps: NDArray[np.int64],
+    strips: list[list[NDArray[np.int32]]],
+) -> None:
+    """Send any number of lines for each step; those of a single field are no lines."""
+    drawn = [[centres(strip) for strip in row if len(strip) > 1] for row in strips]
+    columns = rr.LineStrips2D.columns(strips=[strip for row in drawn for strip in row])
+    time = [rr.TimeColumn(TIMELINE, sequence=steps)]
+    stream.send_columns(entity, time, columns.partition([len(row) for row in drawn]))
+
+
+def _send_calls(stream: rr.RecordingStream, drive: _Drive) -> None:
+    """Send what each planner answered, for its step only; those adopted are thick."""
+    for part in sorted({call.part for call in drive.calls}):
+        color = _PARTS.get(part, GREY)
+        for adopted, name, width in ((True, "adopted", 5), (False, "not_adopted", 1.5)):
+            answers: dict[int, list[NDArray[np.int32]]] = {}
+            for call in drive.calls:
+                if (call.part, call.adopted) == (part, adopted) and len(call.path):
+                    step = call.step - drive.trial.step
+                    answers.setdefault(step, []).append(call.path)
+                    answers.setdefault(step + 1, [])
+            if answers:
+                entity = f"map/calls/{part}/{name}"
+                stream.log(entity, line(color, width, draw_order=24), static=True)
+                steps = sorted(answers)
+                strips = [answers[step] for step in steps]
+                _send_strips(stream, entity, np.array(steps), strips)
+    if drive.calls:
+        texts = [
+            f"{call.part}{call.index} {call.status.name.lower().replace('_', ' ')}: {call.cost:g}"
+            f" {_effort(call)}{', adopted' if call.adopted else ''}"
+            for call in drive.calls
+        ]
+        levels = ["INFO" if call.adopted else "DEBUG" for call in drive.calls]
+        time = [rr.TimeColumn(TIMELINE, sequence=drive.time(drive.calls))]
+        stream.send_columns("calls", time, rr.TextLog.columns(text=texts, level=levels))
+
+
+def _effort(call: Called) -> str:
+    return f"in {call.epochs} epochs" if call.epochs else f"from {call.expansions} fields"
+
+
+def _send_modes(stream: rr.RecordingStream, drive: _Drive) -> None:
+    """Send the mode where it changes, as a band."""
+    band = rr.StateConfiguration(
+        values=[mode.name.lower() for mode in _MODES],
+        colors=list(_MODES.values()),
+    )
+    stream.log("mode", band, static=True)
+    modes = np.array([step.mode for step in drive.steps])
+    changed = np.flatnonzero(np.diff(modes, prepend=-1))
+    names = [Mode(modes[i]).name.lower() for i in changed]
+    time = [rr.TimeColumn(TIMELINE, sequence=drive.time(drive.steps)[changed])]
+    stream.send_columns("mode", time, rr.StateChange.columns(state=names))
+
+
+def _cost_left(run: RunStarted, events: list[Event], unknown: float) -> NDArray[np.float64]:
+    """Give KG18 eq. (5) of what is left of the current path after each step.
+
+    NaN where there is no path, and where the robot knows of an obstacle on it.
+    """
+    grid = run.problem.map
+    known = np.full(grid.weights.shape, unknown)
+    for x, y in (run.problem.start, run.problem.target):
+        known[y, x] = grid.weights[y, x]
+    path, left = np.empty((0, 2), dtype=np.int32), []
+    for event in events:
+        if isinstance(event, PathsChanged):
+            path = event.path
+        elif isinstance(event, Stepped):
+            weights = np.where(event.entries < OBSTACLE, event.entries / SCALE, np.nan)
+            known[event.fields[:, 1], event.fields[:, 0]] = weights
+            if len(path) > 1 and tuple(path[1]) == event.place:
+                path = path[1:]
+            left.append(known[path[:, 1], path[:, 0]].sum() if len(path) else np.nan)
+    return np.array(left)

@@ -1,0 +1,106 @@
+"""Rerun recordings: one ``trial-<n>.rrd`` for each chosen trial.
+
+What a recording shows is made in `gapath.recorders.rerun.scene` for plans and in
+`gapath.recorders.rerun.drive_scene` for drives. They import Rerun, which takes up to a second,
+so that waits until a chosen trial has ended. The recording is made in memory and written
+here, because Rerun's own file writer loses data on a full disk without an error.
+"""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from gapath.errors import require
+from gapath.events import DriveFinished, Event, RunStarted, Surveyed, TrialFinished, TrialStarted
+from gapath.store.durable import part_of, publish, write_part
+
+
+@dataclass
+class Recorder:
+    """Record chosen trials for the Rerun viewer.
+
+    Parameters
+    ----------
+    trials : list of int
+        Numbers of the trials to record.
+
+    Raises
+    ------
+    InputError
+        If a number is not a whole one from 0 on; from `record`, if the run has no such
+        trial.
+    """
+
+    trials: list[int]
+    _folder: Path = field(init=False, repr=False)
+    _run: RunStarted = field(init=False, repr=False)
+    _survey: list[Event] = field(init=False, repr=False, default_factory=list)
+    _events: list[Event] = field(init=False, repr=False, default_factory=list)
+    _names: list[str] = field(init=False, repr=False, default_factory=list)
+
+    def __post_init__(self) -> None:
+        good = isinstance(self.trials, list) and all(
+            type(trial) is int and trial >= 0 for trial in self.trials
+        )
+        require(good, "recorder.rerun.trials", self.trials, "a list of trial numbers from 0 on")
+
+    def check(self, trials: int) -> None:
+        """Raise InputError if a chosen trial is not one of a run's."""
+        require(
+            all(trial < trials for trial in self.trials),
+            "recorder.rerun.trials",
+            self.trials,
+            f"trials of this run, 0 to {trials - 1}",
+        )
+
+    def open(self, folder: str) -> None:
+        """Prepare to write files into an existing folder."""
+        self._folder = Path(folder)
+        self._survey, self._events = [], []
+        self._names = []
+
+    def record(self, event: Event) -> None:
+        """Take the next event; a chosen trial's file is written when the trial ends.
+
+        Parameters
+        ----------
+        event : Event
+            In the order in which the run emits them.
+
+        Raises
+        ------
+        InputError
+            If a chosen trial is not one of the run's.
+        OSError
+            If the file cannot be written.
+        """
+        match event:
+            case RunStarted():
+                self.check(event.trials)
+                self._run = event
+            case TrialStarted() if event.trial in self.trials:
+                self._events = [event]
+            case Surveyed():
+                self._survey = [event]
+            case TrialFinished() | DriveFinished() if self._events:
+                self._write(event.trial, [*self._events, *self._survey, event])
+                self._events = []
+            case _ if self._events:
+                self._events.append(event)
+
+    def _write(self, trial: int, events: list[Event]) -> None:
+        from gapath.recorders.rerun import drive_scene, scene
+
+        kind = scene if isinstance(events[-1], TrialFinished) else drive_scene
+        name = f"trial-{trial}.rrd"
+        write_part(self._folder / name, kind.recording(self._run, events))
+        self._names.append(name)
+
+    def close(self) -> list[str]:
+        """Give the files their final names, make those durable, and return them."""
+        for name in self._names:
+            publish(part_of(self._folder / name), self._folder / name)
+        return self._names
+
+    def abort(self) -> None:
+        """Forget the trial under way; files already written stay as ``.part``."""
+        self._events = []

@@ -1,0 +1,208 @@
+"""Seeds, trials and run folders: from a checked run to files on disk."""
+
+import traceback
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from gapath.events import Event, RunFinished, RunStarted
+from gapath.problem import Plan
+from gapath.runs.config import Run, task_from_settings
+from gapath.store.durable import write_whole
+from gapath.store.rows import parquet
+from gapath.store.runfolder import (
+    MANIFEST,
+    Busy,
+    RunFolder,
+    now,
+    run_key,
+    setting_hash,
+    sha256,
+    versions,
+)
+from gapath.task import Batch
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How the execution of a run ended.
+
+    Parameters
+    ----------
+    folder : Path
+        The run folder.
+    state : str
+        done, infeasible, skipped (whole already) or busy (another process is at it).
+    rows : list of dataclass
+        The trials, of the task's row type; empty if the run was not executed.
+    files : list of str
+        Names of the files that it wrote.
+    """
+
+    folder: Path
+    state: str
+    rows: list[Any]
+    files: list[str]
+
+
+def run_started(run: Run, optimum: Plan) -> RunStarted:
+    """Make a run's first event."""
+    return RunStarted(
+        run.experiment,
+        run.method,
+        run.task.name,
+        run.problem,
+        run.seed,
+        run.trials,
+        run.settings,
+        versions(),
+        optimum.path,
+        optimum.cost,
+    )
+
+
+def replay_events(started: RunStarted) -> Iterator[Event]:
+    """Do a run again from what its log says of it.
+
+    Parameters
+    ----------
+    started : RunStarted
+        The first event of a log.
+
+    Yields
+    ------
+    Event
+        What the run would emit now, from the second event on.
+    """
+    task = task_from_settings(started.settings)
+    batch = Batch(
+        started.experiment, started.planner, started.problem, started.seed, started.trials
+    )
+    step = found = 0
+    for trial in task.trials(batch, task.optimum(started.problem)):
+        yield from trial.events(step)
+        step += trial.steps
+        found += trial.found
+    yield RunFinished(step, started.trials, found)
+
+
+def execute(run: Run, command: str, progress: bool = True) -> Outcome:
+    """Do a run and write its folder.
+
+    Parameters
+    ----------
+    run : Run
+        What to do.
+    command : str
+        The command that does the same, for the manifest.
+    progress : bool
+        Show a bar while it runs, if the error stream is a terminal.
+
+    Returns
+    -------
+    Outcome
+        The state is "skipped" if the folder is whole already and not ``run.force``.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be written.
+    """
+    key = run_key(run.settings, run.method, run.problem)
+    folder = RunFolder(Path(run.output) / run.experiment / key)
+    folder.create()
+    try:
+        with folder.lock():
+            if folder.is_whole() and not run.force:
+                return Outcome(folder.path, "skipped", [], [])
+            return _execute_held(run, folder, key, command, progress)
+    except Busy:
+        return Outcome(folder.path, "busy", [], [])
+
+
+def _execute_held(run: Run, folder: RunFolder, key: str, command: str, progress: bool) -> Outcome:
+    started = now()
+    folder.write_status("running", started)
+    try:
+        write_whole(folder.path / "config.yaml", run.settings.encode())
+        optimum = run.task.optimum(run.problem)
+        rows, recorded = _do_trials(run, optimum, folder, progress)
+        write_whole(folder.path / "trials.parquet", parquet(run.task.row, rows))
+        names = ["config.yaml", "trials.parquet", *recorded]
+        folder.keep_only(names)
+        folder.write_json(MANIFEST, _manifest(run, folder, key, command, names))
+        state = "done" if optimum.feasible else "infeasible"
+        folder.write_status(state, started)
+        return Outcome(folder.path, state, rows, [*names, MANIFEST, "status.json"])
+    except BaseException as error:
+        interrupted = isinstance(error, KeyboardInterrupt)
+        state = "interrupted" if interrupted else "failed"
+        folder.write_status(state, started, "" if interrupted else traceback.format_exc())
+        raise
+
+
+def _do_trials(
+    run: Run, optimum: Plan, folder: RunFolder, progress: bool
+) -> tuple[list[Any], list[str]]:
+    from tqdm import tqdm
+
+    rows: list[Any] = []
+    step = found = 0
+
+    def record(event: Event) -> None:
+        for recorder in run.recorders:
+            recorder.record(event)
+
+    batch = Batch(run.experiment, run.method, run.problem, run.seed, run.trials, run.threads)
+    bar = tqdm(
+        run.task.trials(batch, optimum),
+        desc=f"{run.problem.map.name} {run.method}",
+        total=run.trials,
+        unit="trial",
+        leave=False,
+        disable=None if progress else True,
+    )
+    try:
+        for recorder in run.recorders:
+            recorder.open(str(folder.path))
+        record(run_started(run, optimum))
+        for trial in bar:
+            if run.recorders:
+                for event in trial.events(step):
+                    record(event)
+            step += trial.steps
+            found += trial.found
+            rows.append(trial.row)
+        record(RunFinished(step, run.trials, found))
+        return rows, [name for recorder in run.recorders for name in recorder.close()]
+    except BaseException:
+        for recorder in run.recorders:
+            recorder.abort()
+        raise
+
+
+def _manifest(
+    run: Run, folder: RunFolder, key: str, command: str, names: list[str]
+) -> dict[str, object]:
+    listed = {
+        name: {
+            "sha256": sha256(folder.path / name),
+            "bytes": (folder.path / name).stat().st_size,
+        }
+        for name in names
+    }
+    return {
+        "key": key,
+        "setting": setting_hash(run.settings, run.method, run.problem),
+        "experiment": run.experiment,
+        "map": run.problem.map.name,
+        "map_instance": run.problem.map.instance,
+        "task": run.task.name,
+        "planner": run.method,
+        "seed": run.seed,
+        "trials": run.trials,
+        "command": command,
+        "versions": versions(),
+        "files": listed,
+    }

@@ -1,0 +1,1 @@
+"""Run folders: key, manifest, status, locks, files that survive."""

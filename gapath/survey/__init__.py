@@ -1,0 +1,1 @@
+"""From pictures and grids to graphs and genotypes (M22, S04)."""

@@ -1,0 +1,255 @@
+"""The task "plan": trials are planning queries on a known map."""
+
+import json
+import math
+import statistics
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gapath.events import Event, Evolved, Surveyed, TrialFinished, TrialStarted
+from gapath.planning.metrics import clearances, line_length, path_metrics
+from gapath.planning.shortest_path import shortest_path
+from gapath.planning.simulation import TimedPlan, plan_trials
+from gapath.problem import Particular, Plan, Planner, Problem
+from gapath.task import Batch, Trial
+
+
+@dataclass(frozen=True)
+class PlanRow:
+    """A row of ``trials.parquet``: a planning query; failures are rows too.
+
+    `cost` of a failure is the planner's best fitness, obstacles counted as VLN; `length`
+    and what follows describe a path and are NaN (turns: 0) where there is none. `line_length`
+    is the Euclidean length of the straight lines that a path is made of, NaN for one that is not;
+    `stage_times_s` gives the wall time of each stage of a planner that has stages, as JSON.
+    """
+
+    experiment: str
+    map: str
+    map_instance: int
+    map_source: str
+    width: int
+    height: int
+    start: str
+    target: str
+    corner_cutting: str
+    planner: str
+    seed: int
+    trial: int
+    status: str
+    feasible: bool
+    cost: float
+    optimal_cost: float
+    optimality_ratio: float
+    length: float
+    turns: int
+    clearance: float
+    curvature: float
+    epochs: int
+    evaluations: int
+    expansions: int
+    plan_time_s: float
+    line_length: float
+    stage_times_s: str
+
+
+@dataclass(frozen=True)
+class PlanTask:
+    """Plan on a map that is known.
+
+    Parameters
+    ----------
+    planner : Planner
+        Any planner.
+    """
+
+    planner: Planner
+
+    name = "plan"
+    row = PlanRow
+
+    def check(self, problem: Problem) -> None:
+        """Raise InputError if the planner does not take such a map."""
+        if isinstance(self.planner, Particular):
+            self.planner.check(problem)
+
+    def optimum(self, problem: Problem) -> Plan:
+        """Find a path of least cost, KG18 eq. (5).
+
+        Parameters
+        ----------
+        problem : Problem
+            Start and target on a known map.
+
+        Returns
+        -------
+        Plan
+            FOUND or INFEASIBLE.
+        """
+        return shortest_path(problem)
+
+    def trials(self, batch: Batch, optimum: Plan) -> Iterator[Trial]:
+        """Plan with the random streams (seed, 0) to (seed, trials - 1).
+
+        Parameters
+        ----------
+        batch : Batch
+            Problem, keys of the streams, names for the rows.
+        optimum : Plan
+            As `optimum` gives it.
+
+        Yields
+        ------
+        Trial
+            In order.
+        """
+        distances = clearances(batch.problem.map)
+        answers = plan_trials(
+            batch.problem, optimum, self.planner, batch.seed, batch.trials, batch.threads
+        )
+        for answer in answers:
+            row = _row(batch, answer, optimum, distances)
+            events = partial(trial_events, answer, batch.seed)
+            yield Trial(row, row.feasible, duration(answer.plan), events)
+
+    def summary(self, rows: list[PlanRow]) -> dict[str, object]:
+        """Sum trials up for the terminal: label -> value."""
+        found = [row for row in rows if row.feasible]
+        if len(rows) == 1:
+            row = rows[0]
+            return {
+                "seed": row.seed,
+                "status": row.status,
+                **_effort(row),
+            }
+        lines: dict[str, object] = {
+            "trials": len(rows),
+            "found": f"{len(found)} ({100 * len(found) / len(rows):.1f} %)",
+        }
+        if rows[0].status != "infeasible":
+            lines["optimal cost"] = f"{rows[0].optimal_cost:g}"
+            lines["median time"] = _median_time(rows)
+        if found:
+            cost = statistics.median(row.cost for row in found)
+            epochs = statistics.median(row.epochs for row in found)
+            lines["median cost"] = f"{cost:g}, of paths found"
+            if epochs:
+                lines["median epochs"] = f"{epochs:g}, of paths found"
+        return lines
+
+    def line(self, rows: list[PlanRow]) -> str:
+        """Sum trials up in one line."""
+        if rows[0].status == "infeasible":
+            return _no_path(rows[0])
+        found = sum(row.feasible for row in rows)
+        return f"{found} of {len(rows)} found, median {_median_time(rows)}"
+
+
+def _effort(row: PlanRow) -> dict[str, object]:
+    """Tell what applies: a genetic algorithm has epochs, a graph search has expansions."""
+    if row.status == "infeasible":
+        return {"reason": _no_path(row)}
+    lines: dict[str, object] = {}
+    if not math.isinf(row.cost):  # a search that counts no obstacles has no cost without a path
+        lines["cost" if row.feasible else "best cost"] = f"{row.cost:g}"
+    lines["optimal cost"] = f"{row.optimal_cost:g}"
+    if not math.isnan(row.line_length):
+        lines["length"] = f"{row.line_length:.1f} fields in straight lines"
+    if row.epochs:
+        lines |= {"epochs": row.epochs, "evaluations": row.evaluations}
+    if row.expansions:
+        lines["expansions"] = row.expansions
+    return lines | {"time": _median_time([row])}
+
+
+def _no_path(row: PlanRow) -> str:
+    if math.isinf(row.optimal_cost):
+        return "no path exists: the target cannot be reached from the start"
+    return (
+        "no path for the planner's robot and keypoints, one for a robot that is a point: try a "
+        "smaller planner.robot_radius, or planner.keypoints=corners"
+    )
+
+
+def _median_time(rows: list[PlanRow]) -> str:
+    return f"{1000 * statistics.median(row.plan_time_s for row in rows):.3g} ms"
+
+
+def trial_events(answer: TimedPlan, seed: int, step: int) -> Iterator[Event]:
+    """Tell a planning query as events.
+
+    Parameters
+    ----------
+    answer : TimedPlan
+        The planner's answer.
+    seed : int
+        The run's seed.
+    step : int
+        The step at which the trial begins.
+
+    Yields
+    ------
+    Event
+        Its start, what the planner made of the map (in the first trial), its evolution if it has
+        one, its end.
+    """
+    plan = answer.plan
+    yield TrialStarted(step, answer.number, seed)
+    if answer.number == 0 and plan.survey is not None:
+        yield Surveyed(step, answer.number, plan.survey())
+    if plan.evolution is not None:
+        yield Evolved(step, answer.number, 0, plan.evolution)
+    yield TrialFinished(
+        step + duration(plan) - 1,
+        answer.number,
+        plan.status,
+        plan.cost,
+        plan.epochs,
+        plan.evaluations,
+        plan.expansions,
+        plan.path,
+    )
+
+
+def duration(plan: Plan) -> int:
+    """Give the number of steps that a query takes: one an epoch, at least one."""
+    return max(plan.epochs, 1)
+
+
+def _row(batch: Batch, answer: TimedPlan, optimum: Plan, distances: NDArray[np.float64]) -> PlanRow:
+    grid, plan = batch.problem.map, answer.plan
+    metrics = path_metrics(grid, plan.path, distances)
+    ratio = plan.cost / optimum.cost if plan.feasible and optimum.cost else math.nan
+    return PlanRow(
+        experiment=batch.experiment,
+        map=grid.name,
+        map_instance=grid.instance,
+        map_source=grid.source,
+        width=grid.cols,
+        height=grid.rows,
+        start=str(batch.problem.start),
+        target=str(batch.problem.target),
+        corner_cutting=batch.problem.corner_cutting.name.lower(),
+        planner=batch.method,
+        seed=batch.seed,
+        trial=answer.number,
+        status=plan.status.name.lower(),
+        feasible=plan.feasible,
+        cost=plan.cost,
+        optimal_cost=optimum.cost,
+        optimality_ratio=ratio,
+        length=metrics.length,
+        turns=metrics.turns,
+        clearance=metrics.clearance,
+        curvature=metrics.curvature,
+        epochs=plan.epochs,
+        evaluations=plan.evaluations,
+        expansions=plan.expansions,
+        plan_time_s=answer.plan_time_s,
+        line_length=line_length(plan.lines()) if plan.lines else math.nan,
+        stage_times_s=json.dumps(dict(plan.stages)),
+    )

@@ -1,7 +1,0 @@
-"""The fixed point in which weights and costs are counted: exact on every machine."""
-
-SCALE = 65536
-"""A cost of 1.0 is 65536 units, so weights are rounded to 1 / 65536."""
-
-OBSTACLE = 1 << 24
-"""A table entry of a field that cannot be passed: above every weight's."""

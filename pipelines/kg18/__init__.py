@@ -1,0 +1,1 @@
+"""Tables and figures of KG18's known maps."""

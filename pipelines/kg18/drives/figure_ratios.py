@@ -1,0 +1,96 @@
+"""How much longer drives are than the shortest possible: the distribution by navigator."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from gapath.pipelines.numbers.text import percent
+from gapath.pipelines.page.figures import legend, looks, panels, render, style
+from gapath.pipelines.page.section import Figure, Section
+from gapath.pipelines.papers.names import label, rank
+from gapath.pipelines.reading.runs import Run
+
+TASK = "drive"
+EXPERIMENT = "drives"
+ORDER = 63
+
+
+def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
+    """Draw the distribution of steps / shortest.
+
+    Parameters
+    ----------
+    trials : DataFrame
+        The drives of the experiment.
+    runs : sequence of Run
+        The runs they come from.
+
+    Returns
+    -------
+    Section or None
+        One figure with a panel a map; None if no target was reached.
+    """
+    trials = trials[trials["map_instance"] == 0]
+    arrived = trials.groupby("map")["reached"].transform("any")
+    if not arrived.any():
+        return None
+    return Section(title="Length of drives", figures=(_figure(trials[arrived]),))
+
+
+def arrived_within(drives: pd.DataFrame) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Give the share of drives that reached the target within so many times the shortest way.
+
+    Parameters
+    ----------
+    drives : DataFrame
+        The drives of one navigator on one map; one that failed never counts.
+
+    Returns
+    -------
+    ratio : (n,) float64
+        Steps / shortest, ascending, each once.
+    share : (n,) float64
+        Of all drives, at that ratio.
+    """
+    ratios = drives.loc[drives["reached"], "steps_ratio"].to_numpy(dtype=float)
+    ratio, counts = np.unique(ratios, return_counts=True)
+    return ratio, np.cumsum(counts) / len(drives)
+
+
+def _figure(trials: pd.DataFrame) -> Figure:
+    maps = sorted(trials["map"].unique(), key=rank)
+    look = looks(trials["navigator"])
+    with style():
+        canvas, axes = panels(len(maps), height=2.1, same_axes=False)
+        for panel, name in zip(axes, maps, strict=True):
+            here = trials[trials["map"] == name]
+            longest = max(1.1, here["steps_ratio"].max())
+            limits = 1 - 0.04 * (longest - 1), longest + 0.04 * (longest - 1)
+            panel.set_title(label(name, here["map_source"].iloc[0]), fontsize=9)
+            for navigator, (color, dashes) in look.items():
+                ratio, share = arrived_within(here[here["navigator"] == navigator])
+                ends = np.r_[limits[0], ratio, limits[1]]
+                steps = np.r_[0, share, share[-1:] if share.size else 0]
+                panel.step(ends, steps, where="post", color=color, linestyle=dashes)
+            panel.set(xlim=limits, ylim=(-0.04, 1.06))
+        canvas.supxlabel("steps / shortest", fontsize=10)
+        canvas.supylabel("share of drives at the target", fontsize=10)
+        legend(canvas, look)
+        svg, png = render(canvas)
+    ends_at = trials.groupby(["map", "navigator"])["reached"].mean().reset_index()
+    return Figure(
+        "drive_ratios",
+        "Share of all drives that reached the target within so many times the fewest steps "
+        "possible for who knows the map. Each panel has its own scale. A drive that failed never "
+        "counts: a curve that ends below 1 is a navigator that failed.",
+        "Distributions of steps over the shortest possible, one panel a map. The curves end at: "
+        + "; ".join(
+            f"{label(name)}, {label(navigator)} {percent(rate)} %"
+            for name, navigator, rate in ends_at.itertuples(index=False)
+        )
+        + ".",
+        svg,
+        png,
+    )

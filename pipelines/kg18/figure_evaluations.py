@@ -1,0 +1,92 @@
+"""How many evaluations a genetic algorithm needs: the distribution over all trials."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+
+from gapath.pipelines.numbers.text import percent
+from gapath.pipelines.page.figures import legend, looks, panels, render, style
+from gapath.pipelines.page.section import Figure, Section
+from gapath.pipelines.papers.names import label, rank
+from gapath.pipelines.reading.runs import Run
+
+TASK = "plan"
+EXPERIMENT = "table1"
+ORDER = 40
+
+
+def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
+    """Draw the distribution of evaluations to a feasible path.
+
+    Parameters
+    ----------
+    trials : DataFrame
+        The trials of the experiment.
+    runs : sequence of Run
+        The runs they come from.
+
+    Returns
+    -------
+    Section or None
+        One figure with a panel a map; None if no planner counts evaluations.
+    """
+    counted = trials[trials["evaluations"] > 0]
+    if counted.empty:
+        return None
+    return Section(title="Evaluations to a feasible path", figures=(_figure(counted),))
+
+
+def reached(trials: pd.DataFrame) -> tuple[np.ndarray, np.ndarray]:
+    """Give the share of trials that have a feasible path after so many evaluations.
+
+    Parameters
+    ----------
+    trials : DataFrame
+        The trials of one planner on one map; one that failed never counts as reached.
+
+    Returns
+    -------
+    evaluations : (n,) float64
+        Ascending, each once.
+    share : (n,) float64
+        Of all trials, at that many evaluations.
+    """
+    found = trials.loc[trials["feasible"], "evaluations"].to_numpy(dtype=float)
+    evaluations, counts = np.unique(found, return_counts=True)
+    return evaluations, np.cumsum(counts) / len(trials)
+
+
+def _figure(trials: pd.DataFrame) -> Figure:
+    maps = sorted(trials["map"].unique(), key=rank)
+    look = looks(trials["planner"])
+    limits = 0.8 * trials["evaluations"].min(), 1.25 * trials["evaluations"].max()
+    with style():
+        canvas, axes = panels(len(maps), height=2.0)
+        for panel, name in zip(axes, maps, strict=True):
+            here = trials[trials["map"] == name]
+            panel.set_title(label(name, here["map_source"].iloc[0]))
+            for planner, (color, dashes) in look.items():
+                evaluations, share = reached(here[here["planner"] == planner])
+                ends = np.r_[limits[0], evaluations, limits[1]]
+                steps = np.r_[0, share, share[-1:] if share.size else 0]
+                panel.step(ends, steps, where="post", color=color, linestyle=dashes)
+            panel.set(xscale="log", xlim=limits, ylim=(-0.04, 1.06))
+        canvas.supxlabel("evaluations", fontsize=10)
+        canvas.supylabel("share of trials with a path", fontsize=10)
+        legend(canvas, look)
+        svg, png = render(canvas)
+    ends_at = trials.groupby(["map", "planner"])["feasible"].mean().reset_index()
+    return Figure(
+        "evaluations",
+        "Share of all trials that have a feasible path after so many evaluations of the fitness. A "
+        "failed trial never counts: a curve that ends below 1 is a planner that failed.",
+        "Distributions of evaluations, one panel a map. The curves end at: "
+        + "; ".join(
+            f"{label(name)}, {label(planner)} {percent(rate)} %"
+            for name, planner, rate in ends_at.itertuples(index=False)
+        )
+        + ".",
+        svg,
+        png,
+    )

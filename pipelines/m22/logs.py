@@ -1,0 +1,76 @@
+"""What M22's figures take from the log of a run."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gapath.events import Evolved, RunStarted, Surveyed, TrialFinished
+from gapath.pipelines.reading.logs import run_start
+from gapath.pipelines.reading.runs import Run
+from gapath.problem import Graph
+from gapath.recorders.mcap import FILE, read_events
+
+
+@dataclass(frozen=True, eq=False)
+class First:
+    """A run's start, its graph, and its first trial that found a path.
+
+    Parameters
+    ----------
+    start : RunStarted
+        What the log says of the run.
+    graph : Graph or None
+        What the planner made of the map.
+    way_points : (n, 2) int32
+        Of the first path found, each once, for a search all its fields; empty if no trial found
+        one.
+    best : (E,) float64
+        f by generation of that trial.
+    """
+
+    start: RunStarted
+    graph: Graph | None
+    way_points: NDArray[np.int32]
+    best: NDArray[np.float64]
+
+
+def read_first(run: Run) -> First | None:
+    """Read a run's log up to its first path.
+
+    Parameters
+    ----------
+    run : Run
+        A run.
+
+    Returns
+    -------
+    First or None
+        None if the run has no log.
+
+    Raises
+    ------
+    InputError
+        If the log does not begin with the run's start, or cannot be read.
+    """
+    if FILE not in run.manifest["files"]:
+        return None
+    events = read_events(run.folder / FILE)
+    start, graph = run_start(events), None
+    way_points, best = np.empty((0, 2), dtype=np.int32), np.empty(0)
+    for event in events:
+        if isinstance(event, Surveyed):
+            graph = event.graph
+        elif isinstance(event, Evolved):
+            way_points, best = event.evolution.way_points[-1], event.evolution.best
+        elif isinstance(event, TrialFinished) and len(event.path):
+            if not len(best):  # a search: its path is all there is
+                way_points = event.path
+            return First(start, graph, _once(way_points), best)
+    return First(start, graph, np.empty((0, 2), dtype=np.int32), np.empty(0))
+
+
+def _once(points: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Leave out points that repeat the one before."""
+    moved = (np.diff(points, axis=0) != 0).any(axis=1)
+    return points[np.concatenate(([True], moved))]

@@ -1,0 +1,322 @@
+"""M22 Sec. III: ten scenes, the paper's planner beside exact ones and free points."""
+
+import json
+import math
+from collections import defaultdict
+from collections.abc import Sequence
+
+import pandas as pd
+
+from gapath.pipelines.numbers.statistics import wilson
+from gapath.pipelines.numbers.summary import spread
+from gapath.pipelines.numbers.text import NOTHING, number, percent, percent_range
+from gapath.pipelines.page.section import Section, Table
+from gapath.pipelines.papers.m22 import EXACT, IMAGE_SHARE, MAPS, PAPER
+from gapath.pipelines.papers.names import label, rank
+from gapath.pipelines.reading.runs import Run
+
+TASK = "plan"
+EXPERIMENT = "m22"
+ORDER = 92
+
+SCENES = (
+    "The scenes marked reconstructed are not the paper's: its figures are lost. They were drawn "
+    "by a seeded generator: six convex obstacles, start at the lower left, end at the right border."
+)
+
+STAGES = ("resizing", "dilation", "keypoints", "graph", "genetic algorithm", "search", "planning")
+
+
+def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
+    """Make the section on M22's scenes.
+
+    Parameters
+    ----------
+    trials : DataFrame
+        The trials of the experiment.
+    runs : sequence of Run
+        The runs they come from.
+
+    Returns
+    -------
+    Section
+        Methods beside the paper's, scene by scene, and where the time goes.
+    """
+    trials = with_references(trials)
+    methods, stages = summarise_methods(trials), summarise_stages(trials)
+    return Section(
+        title="M22: from an image to a visibility graph to a genetic algorithm",
+        text=(
+            "White obstacles on a black floor are grown by the robot's radius; the ends of their "
+            "main axes are keypoints; straight lines between these that meet no obstacle make a "
+            "graph; a genetic algorithm looks for the shortest path through it, f being its "
+            "length in pixels. It stops after 20 generations without a shorter path, as in the "
+            "paper's ten tests, or takes 829 (unlimited), as in one more.",
+            SCENES,
+        ),
+        tables=(_methods(methods), _scenes(trials), _stages(stages)),
+        remarks=_remarks(methods, stages),
+    )
+
+
+def with_references(trials: pd.DataFrame) -> pd.DataFrame:
+    """Put beside each trial what exact planners found on its scene.
+
+    Parameters
+    ----------
+    trials : DataFrame
+        One row a trial.
+
+    Returns
+    -------
+    DataFrame
+        With `gap`, f above the shortest path of the same graph, and `above_pixels`, octile length
+        above that of A* on the pixel grid; both as a part of the reference, missing where there
+        is none.
+    """
+    found = trials[trials["feasible"]]
+    shortest = found.groupby(["map", "planner"])[["line_length", "length"]].min()
+    graph = [
+        _reference(shortest["line_length"], name, EXACT.get(planner, planner))
+        for name, planner in zip(trials["map"], trials["planner"], strict=True)
+    ]
+    pixels = [_reference(shortest["length"], name, "inflated_astar") for name in trials["map"]]
+    known = trials["planner"].isin({*EXACT, *EXACT.values()})
+    gap = (trials["line_length"] / pd.Series(graph, index=trials.index) - 1).where(known)
+    above = trials["length"] / pd.Series(pixels, index=trials.index) - 1
+    return trials.assign(gap=gap, above_pixels=above)
+
+
+def _reference(lengths: pd.Series, name: str, planner: str) -> float:
+    return float(lengths.get((name, planner), float("nan")))
+
+
+def summarise_methods(trials: pd.DataFrame) -> pd.DataFrame:
+    """Summarise each method over the scenes.
+
+    Parameters
+    ----------
+    trials : DataFrame
+        As `with_references` gives them.
+
+    Returns
+    -------
+    DataFrame
+        planner, scenes, n, found, success with its interval over scenes; f, gap and above_pixels
+        of the trials that found a path, means of the scenes' means, since the fewer of a hard
+        scene must not count less; the worst gap; mean epochs and evaluations and quartiles of
+        seconds of all trials; the paper's f, generations and seconds.
+    """
+    rows = []
+    for planner, group in trials.groupby("planner"):
+        rates = group.groupby("map")["feasible"].mean()
+        low, high = wilson(float(rates.mean()), len(rates))
+        evolves = group["epochs"].gt(0).any()
+        means = group.groupby("map")[["line_length", "gap", "above_pixels"]].mean().mean()
+        paper = PAPER.get(str(planner), (float("nan"),) * 3)
+        rows.append(
+            {
+                "planner": planner,
+                "scenes": len(rates),
+                "n": len(group),
+                "found": int(group["feasible"].sum()),
+                "success": rates.mean(),
+                "success_low": low if evolves else float("nan"),
+                "success_high": high if evolves else float("nan"),
+                "f": means["line_length"],
+                "gap": means["gap"],
+                "worst_gap": group["gap"].max(),
+                "above_pixels": means["above_pixels"],
+                "epochs": group["epochs"].mean() if evolves else float("nan"),
+                "evaluations": group["evaluations"].mean() if evolves else float("nan"),
+                **{f"seconds_{k}": v for k, v in spread(group["plan_time_s"])._asdict().items()},
+                **{f"paper_{k}": v for k, v in zip(("f", "epochs", "seconds"), paper, strict=True)},
+            }
+        )
+    rows.sort(key=lambda row: rank(str(row["planner"])))
+    return pd.DataFrame(rows)
+
+
+def _methods(rows: pd.DataFrame) -> Table:
+    shown = [
+        {
+            "Method": label(row["planner"]),
+            "Trials": number(row["n"]),
+            "Found, %": percent(row["success"]),
+            "95 %": percent_range((row["success_low"], row["success_high"])),
+            "f": _tenth(row["f"]),
+            "f, paper": _tenth(row["paper_f"]),
+            "f above shortest, %": _part(row["gap"]),
+            "Octile above A*, %": _part(row["above_pixels"]),
+            "Generations": _tenth(row["epochs"]),
+            "Generations, paper": _tenth(row["paper_epochs"]),
+            "Evaluations": number(round(row["evaluations"])) if row["epochs"] > 0 else NOTHING,
+            "Time, ms": number(1000 * row["seconds_median"]),
+            "Time, paper, s": number(row["paper_seconds"]),
+        }
+        for _, row in rows.iterrows()
+    ]
+    return Table(
+        "m22",
+        "M22 Sec. III over the scenes. Found: the mean of the scenes' rates with its 95 % Wilson "
+        "interval over scenes. f: length of the straight lines of paths found, in pixels. Above "
+        "shortest: f over the shortest path of the same graph. Octile: length of the path's fields "
+        "over that of A* on the pixel grid, obstacles grown alike. All three are means of the "
+        "scenes' means. "
+        "Generations and evaluations: means of all trials. Time: from picture to path, median.",
+        rows,
+        pd.DataFrame(shown),
+        heads=1,
+    )
+
+
+def _tenth(value: float) -> str:
+    return NOTHING if pd.isna(value) else f"{value:.1f}".removesuffix(".0")
+
+
+def _part(value: float) -> str:
+    return NOTHING if pd.isna(value) else f"{100 * value:.1f}"
+
+
+def _scenes(trials: pd.DataFrame) -> Table:
+    rows, shown = [], []
+    names = [name for name in MAPS if name in set(trials["map"])]
+    others = sorted(set(trials["map"]) - set(names))
+    for name in (*names, *others):
+        here = trials[trials["map"] == name]
+        source = str(here["map_source"].iloc[0])
+        means: defaultdict[str, float] = defaultdict(lambda: math.nan)
+        for planner, group in here.groupby("planner"):
+            means[f"{planner} found"] = group["feasible"].mean()
+            means[f"{planner} f"] = group["line_length"].mean()
+            means[f"{planner} length"] = group["length"].mean()
+            means[f"{planner} epochs"] = group["epochs"].mean()
+        rows.append({"map": name, "map_source": source, **means})
+        shown.append(
+            {
+                "Scene": label(name, source),
+                "Shortest f": _tenth(means["visibility_dijkstra f"]),
+                "M22: found, %": _rate(means["visibility_ga found"]),
+                "M22: f": _tenth(means["visibility_ga f"]),
+                "M22: generations": _tenth(means["visibility_ga epochs"]),
+                "Unlimited: found, %": _rate(means["visibility_ga_unlimited found"]),
+                "Unlimited: f": _tenth(means["visibility_ga_unlimited f"]),
+                "Resized: f": _tenth(means["visibility_ga_resized f"]),
+                "Corners: shortest f": _tenth(means["visibility_dijkstra_corners f"]),
+                "Corners: f": _tenth(means["visibility_ga_corners f"]),
+                "GA 3: f": _tenth(means["inflated_ga3 f"]),
+                "Pixels: octile": _tenth(means["inflated_astar length"]),
+            }
+        )
+    return Table(
+        "m22_scenes",
+        "Scene by scene: mean f, in pixels, of the trials that found a path, and the exact "
+        "shortest f on the graph of axes' ends and on that of corners. The last column is the "
+        "octile length of the shortest path on the pixel grid, which moves in eight directions "
+        "only.",
+        pd.DataFrame(rows),
+        pd.DataFrame(shown),
+        heads=1,
+    )
+
+
+def _rate(value: float) -> str:
+    return NOTHING if pd.isna(value) else percent(value)
+
+
+def summarise_stages(trials: pd.DataFrame) -> pd.DataFrame:
+    """Give the median time of each stage.
+
+    Parameters
+    ----------
+    trials : DataFrame
+        One row a trial.
+
+    Returns
+    -------
+    DataFrame
+        planner, then a column a stage in seconds, missing where a planner has no such stage.
+    """
+    times = pd.DataFrame([json.loads(text) for text in trials["stage_times_s"]])
+    stages = [name for name in STAGES if name in times]
+    times = times.reindex(columns=stages).assign(planner=trials["planner"].to_numpy())
+    medians = times.groupby("planner").median()
+    return medians.loc[sorted(medians.index, key=rank)].reset_index()
+
+
+def _stages(medians: pd.DataFrame) -> Table:
+    stages = [name for name in STAGES if name in medians]
+    shown = [
+        {
+            "Method": label(row["planner"]),
+            **{f"{name.capitalize()}, ms": number(1000 * row[name]) for name in stages},
+        }
+        for _, row in medians.iterrows()
+    ]
+    return Table(
+        "m22_stages",
+        "Where the time goes: median of each stage over all trials. Resizing is the search for the "
+        "coarsest scale that loses nothing; planning, of what is not the paper's, the whole search "
+        "on the pixel grid.",
+        medians,
+        pd.DataFrame(shown),
+        heads=1,
+    )
+
+
+def _remarks(rows: pd.DataFrame, stages: pd.DataFrame) -> tuple[str, ...]:
+    by, took = rows.set_index("planner"), stages.set_index("planner")
+    remarks = []
+    if {"visibility_ga", "visibility_ga_unlimited"} <= set(by.index):
+        remarks += _of_the_limit(by.loc["visibility_ga"], by.loc["visibility_ga_unlimited"])
+    if {"visibility_dijkstra", "visibility_ga"} <= set(by.index):
+        exact = took.loc["visibility_dijkstra"].get("search", float("nan"))
+        genetic = took.loc["visibility_ga"].get("genetic algorithm", float("nan"))
+        remarks.append(
+            f"The exact answer takes microseconds: {number(1e6 * exact)} us for Dijkstra on the "
+            f"graph, {number(1e6 * genetic)} us for the genetic algorithm. The paper's "
+            f"{number(PAPER['visibility_astar'].seconds)} s for A* are those of its "
+            "implementation, which compares whole images; it says that "
+            f"{100 * IMAGE_SHARE:.0f} % of the genetic algorithm's time goes there, too."
+        )
+    remarks.append(
+        "Here each pair of points is tested once, pixel by pixel along its line, before the search "
+        "begins, which then only looks lengths up."
+    )
+    if {"visibility_ga", "visibility_ga_resized"} <= set(by.index):
+        small, full = took.loc["visibility_ga_resized"], took.loc["visibility_ga"]
+        image = ["dilation", "keypoints", "graph"]
+        saved = full.reindex(image).sum() - small.reindex(image).sum()
+        remarks.append(
+            "Resizing is part of the paper's further work; f is then only that of paths whose "
+            f"lines are free at full size, too. It saves {number(1000 * saved)} ms, and the search "
+            f"for the scale takes {number(1000 * small.get('resizing', float('nan')))} ms: it pays "
+            "where a scale is kept for many plans."
+        )
+    if "inflated_ga3" in by.index:
+        remarks.append(
+            "KG18's planner is what the paper's other further work asks for, a genetic algorithm "
+            "over free (x, y) points: it minimises the sum of the weights of the fields, by which "
+            "a diagonal step costs no more than a straight one, and stops at its first free path."
+        )
+    return (*remarks, "The paper's seconds are those of another machine and language.")
+
+
+def _of_the_limit(limited: pd.Series, unlimited: pd.Series) -> list[str]:
+    """Say what the limit of generations without improvement does."""
+    remarks = []
+    if limited["found"] and unlimited["found"]:
+        paper = PAPER["visibility_ga_unlimited"].length / PAPER["visibility_ga"].length
+        remarks.append(
+            f"Without the limit f is {100 * (1 - unlimited['f'] / limited['f']):.1f} % lower "
+            f"(paper: {100 * (1 - paper):.1f} %), and {_part(unlimited['gap'])} % above the "
+            f"shortest path of the graph in the mean, {_part(unlimited['worst_gap'])} % at worst."
+        )
+    if limited["success"] < 1:
+        remarks.append(
+            f"With the limit {percent(1 - limited['success'])} % of the runs end without any path: "
+            "every chromosome with a line that is not free counts the same, so until one is found "
+            "by chance nothing leads to it, and 20 generations without one end the run. The paper "
+            "reports a path in each of its ten tests."
+        )
+    return remarks

@@ -1,0 +1,107 @@
+"""What a group of drives comes to: one row of a table."""
+
+import numpy as np
+import pandas as pd
+
+from gapath.events import Outcome
+from gapath.pipelines.numbers.statistics import Interval, wilson
+from gapath.pipelines.numbers.summary import spread
+from gapath.pipelines.numbers.text import percent, percent_range
+from gapath.pipelines.papers.names import rank
+
+OUTCOMES = tuple(outcome.name.lower() for outcome in Outcome)
+
+_SPREADS = {
+    "steps": "steps",
+    "steps_ratio": "steps_ratio",
+    "replans": "replans",
+    "seconds": "compute_time_s",
+}
+"""Each quantity's column in the rows of drives."""
+
+
+def summarise_drives(drives: pd.DataFrame) -> dict[str, float]:
+    """Summarise drives of one setting, failures included.
+
+    Steps / shortest exists only where the target was reached. A navigator that draws no
+    random numbers does the same in each trial of a map, so its rates have no interval.
+
+    Parameters
+    ----------
+    drives : DataFrame
+        One row a drive.
+
+    Returns
+    -------
+    dict
+        n; for each outcome its count, rate and interval; the mean number of planner calls by
+        part; for steps, steps_ratio, replans and seconds the fields of `summary.Spread`.
+    """
+    n = len(drives)
+    row: dict[str, float] = {"n": n}
+    for outcome in OUTCOMES:
+        count = int((drives["outcome"] == outcome).sum())
+        low, high = (np.nan, np.nan) if _repeats(drives) else wilson(count / n, n)
+        row |= {outcome: count, f"{outcome}_rate": count / n}
+        row |= {f"{outcome}_low": low, f"{outcome}_high": high}
+    row |= {f"calls_{part}": drives[f"calls_{part}"].mean() for part in "abc"}
+    for name, column in _SPREADS.items():
+        row |= {f"{name}_{key}": value for key, value in spread(drives[column])._asdict().items()}
+    return row
+
+
+def summarise_drives_by(drives: pd.DataFrame, by: list[str]) -> pd.DataFrame:
+    """Summarise each group of drives, in the paper's order.
+
+    Parameters
+    ----------
+    drives : DataFrame
+        One row a drive.
+    by : list of str
+        The columns that name a group.
+
+    Returns
+    -------
+    DataFrame
+        The columns of `by`, then those of `summarise_drives`.
+    """
+    rows = [
+        {**dict(zip(by, key, strict=True)), **summarise_drives(group)}
+        for key, group in drives.groupby(by, sort=True)
+    ]
+    rows.sort(key=lambda row: [rank(str(row[name])) for name in by])
+    return pd.DataFrame(rows)
+
+
+def over_instances(drives: pd.DataFrame) -> tuple[float, Interval, int]:
+    """Give the rate of drives that reached the target over the instances of a class.
+
+    Parameters
+    ----------
+    drives : DataFrame
+        The drives of one navigator on the instances of one class.
+
+    Returns
+    -------
+    rate : float
+        The mean of the instances' rates.
+    interval : (low, high)
+        Wilson's, counting instances.
+    instances : int
+        Their number.
+    """
+    rates = drives.groupby("map_instance")["reached"].mean()
+    return float(rates.mean()), wilson(float(rates.mean()), len(rates)), len(rates)
+
+
+def rate(row: pd.Series, outcome: str) -> str:
+    """Write a rate in percent with its interval."""
+    interval = percent_range((row[f"{outcome}_low"], row[f"{outcome}_high"]))
+    known = not np.isnan(row[f"{outcome}_low"])
+    return percent(row[f"{outcome}_rate"]) + (f" ({interval})" if known else "")
+
+
+def _repeats(drives: pd.DataFrame) -> bool:
+    """Tell whether every trial of a map was the same drive, without a random number."""
+    steps = drives.groupby(["map", "map_instance"])["steps"].nunique()
+    return not drives["evaluations"].any() and bool((steps == 1).all())

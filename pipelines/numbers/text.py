@@ -1,0 +1,59 @@
+"""How numbers are written for people."""
+
+import math
+
+from gapath.pipelines.numbers.statistics import Interval
+
+NOTHING = "\N{EN DASH}"
+"""What a cell shows where there is no number."""
+
+
+def number(value: float) -> str:
+    """Write a number for people: three significant digits, no exponent.
+
+    Parameters
+    ----------
+    value : float
+        The number.
+
+    Returns
+    -------
+    str
+        The text; "∞" where it is infinite, `NOTHING` where it is missing.
+    """
+    if math.isnan(value):
+        return NOTHING
+    if math.isinf(value):
+        return "∞"
+    if value == 0 or float(value).is_integer() or abs(value) >= 1000:
+        return f"{value:,.0f}".replace(",", "\N{THIN SPACE}")
+    decimals = max(0, 2 - math.floor(math.log10(abs(value))))
+    text = f"{value:.{decimals}f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+def span(low: float, high: float) -> str:
+    """Write a range of numbers for people."""
+    ends = number(low), number(high)
+    return ends[0] if ends[0] == ends[1] else f"{ends[0]} to {ends[1]}"
+
+
+def middle(median: float, q1: float, q3: float) -> str:
+    """Write a median with its quartiles."""
+    return NOTHING if math.isnan(median) else f"{number(median)} ({span(q1, q3)})"
+
+
+def percent(rate: float) -> str:
+    """Write a rate in percent; what is not quite all or nothing never reads as such."""
+    value = 100 * rate
+    if 0 < value < 0.05 or 99.95 <= value < 100:
+        return "< 0.1" if value < 50 else "> 99.9"
+    return f"{value:.1f}".removesuffix(".0")
+
+
+def percent_range(interval: Interval, decimals: int = 1) -> str:
+    """Write an interval of a rate in percent."""
+    if math.isnan(interval[0]):
+        return NOTHING
+    low, high = (f"{100 * end:.{decimals}f}" for end in interval)
+    return f"{low} to {high}"

@@ -1,0 +1,132 @@
+"""How every figure looks, and how it becomes the same bytes each time."""
+
+import io
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from typing import Any, NamedTuple
+
+import matplotlib.style
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Canvas
+from matplotlib.lines import Line2D
+
+from gapath.pipelines.papers.names import label, rank
+
+WIDTH = 4.6
+"""Width of every figure, inches: shrunk to a phone's width its 10 pt stay legible."""
+
+_STYLE = {
+    "figure.facecolor": "white",
+    "font.family": "DejaVu Sans",
+    "font.size": 10,
+    "axes.titlesize": 10,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.color": "#e6e6e6",
+    "axes.axisbelow": True,
+    "legend.frameon": False,
+    "lines.linewidth": 1.8,
+    "svg.hashsalt": "gapath",  # else the ids in the file are drawn at random
+}
+
+
+class Look(NamedTuple):
+    """How one planner is drawn: told apart by colour and by dashes."""
+
+    color: str
+    dashes: Any
+
+
+# Okabe and Ito's colours, of which colour-blind people see the differences.
+_LOOKS = (
+    Look("#0072B2", "-"),
+    Look("#D55E00", (0, (5, 1.5))),
+    Look("#009E73", (0, (1.5, 1))),
+    Look("#CC79A7", (0, (6, 1.5, 1.5, 1.5))),
+    Look("#000000", (0, (3, 3))),
+    Look("#56B4E9", (0, (8, 2))),
+    Look("#E69F00", (0, (4, 1, 1, 1, 1, 1))),
+)
+
+
+def looks(planners: Iterable[str]) -> dict[str, Look]:
+    """Give each planner its look, in the papers' order.
+
+    Parameters
+    ----------
+    planners : iterable of str
+        All planners of the experiment, so that each looks the same in all its figures.
+
+    Returns
+    -------
+    dict of str to Look
+        In the order in which to draw them.
+    """
+    names = sorted(set(planners), key=rank)
+    return {name: _LOOKS[i % len(_LOOKS)] for i, name in enumerate(names)}
+
+
+@contextmanager
+def style() -> Iterator[None]:
+    """Draw figures in this style, without touching that of the calling program."""
+    with matplotlib.style.context(["default", _STYLE]):
+        yield
+
+
+def panels(count: int, height: float, same_axes: bool = True) -> tuple[Canvas, list[Axes]]:
+    """Make a figure of panels, two in a row.
+
+    Parameters
+    ----------
+    count : int
+        Number of panels.
+    height : float
+        Of a panel, inches.
+    same_axes : bool
+        Whether all have the same axes.
+
+    Returns
+    -------
+    canvas : matplotlib.figure.Figure
+        The figure.
+    axes : list of matplotlib.axes.Axes
+        Its panels.
+    """
+    rows, cols = -(-count // 2), min(count, 2)
+    canvas = Canvas(figsize=(WIDTH, 0.7 + height * rows), layout="constrained")
+    axes = list(canvas.subplots(rows, cols, sharex=same_axes, sharey=same_axes, squeeze=False).flat)
+    for empty in axes[count:]:
+        empty.set_axis_off()
+    return canvas, axes[:count]
+
+
+def legend(canvas: Canvas, look: dict[str, Look]) -> None:
+    """Explain the planners' lines above the panels."""
+    handles = [
+        Line2D([], [], color=color, linestyle=dashes, label=label(name))
+        for name, (color, dashes) in look.items()
+    ]
+    cols = len(handles) if len(handles) <= 5 else 3
+    canvas.legend(handles=handles, loc="outside upper center", ncols=cols, handlelength=2.6)
+
+
+def render(canvas: Canvas) -> tuple[bytes, bytes]:
+    """Write a figure as SVG and PNG, without date or version: the same bytes each time.
+
+    Parameters
+    ----------
+    canvas : matplotlib.figure.Figure
+        A figure made within `style`.
+
+    Returns
+    -------
+    (svg, png) : bytes
+        The two files.
+    """
+    files = []
+    for kind, metadata in (("svg", {"Date": None, "Creator": None}), ("png", {"Software": None})):
+        stream = io.BytesIO()
+        canvas.savefig(stream, format=kind, dpi=200, metadata=metadata, bbox_inches="tight")
+        files.append(stream.getvalue())
+    return files[0], files[1]

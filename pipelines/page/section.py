@@ -1,0 +1,158 @@
+"""What a section of the report is made of.
+
+A section is one file of this folder, ``table*.py`` or ``figure_*.py``, that offers
+
+- ``TASK``: "plan" or "drive": it sees trials of this task only;
+- ``EXPERIMENT``: the experiment whose trials it wants, or None for those that no other wants;
+- ``ORDER``: its place on the page, a number;
+- ``section(trials, runs)``: a frame of trials and the runs they come from -> `Section`.
+"""
+
+import importlib
+from dataclasses import dataclass
+from itertools import groupby
+from operator import itemgetter
+from pathlib import Path
+from types import ModuleType
+
+import pandas as pd
+
+RECONSTRUCTED = (
+    "The maps marked reconstructed are not the paper's: its figures are lost. They were drawn "
+    "anew by a seeded generator from what the text says of each class."
+)
+
+
+DRAWN = (
+    "The search spaces marked reconstructed are not the paper's: its figures are lost. They were "
+    "drawn anew, each of the class that the paper's table shows, which is proved."
+)
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of the report.
+
+    Parameters
+    ----------
+    name : str
+        Of its files, without a suffix.
+    caption : str
+        What it shows.
+    data : DataFrame
+        The plain numbers, for the CSV file.
+    shown : DataFrame
+        The text of its cells, for people.
+    heads : int
+        The first so many columns name the row.
+    """
+
+    name: str
+    caption: str
+    data: pd.DataFrame
+    shown: pd.DataFrame
+    heads: int = 2
+
+    def groups(self) -> list[list[tuple[str, ...]]]:
+        """Give the rows of cells, those with the same first cell together."""
+        rows = self.shown.itertuples(index=False, name=None)
+        return [list(group) for _, group in groupby(rows, key=itemgetter(0))]
+
+    def csv(self) -> str:
+        """Write the numbers as CSV."""
+        text: str = self.data.to_csv(index=False, lineterminator="\n")
+        return text
+
+    def markdown(self) -> str:
+        """Write the text of the cells as Markdown."""
+        return f"{self.shown.to_markdown(index=False, disable_numparse=True)}\n\n{self.caption}\n"
+
+    def latex(self) -> str:
+        """Write the text of the cells as LaTeX (booktabs)."""
+        escaped = _escape(self.caption)
+        text = self.shown.rename(columns=_escape).map(_escape)
+        table: str = text.to_latex(index=False, caption=escaped, label=f"tab:{self.name}")
+        return table
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure of the report.
+
+    Parameters
+    ----------
+    name : str
+        Of its files, without a suffix.
+    caption : str
+        How to read it.
+    alt : str
+        What it shows, for who cannot see it.
+    svg, png : bytes
+        The picture.
+    """
+
+    name: str
+    caption: str
+    alt: str
+    svg: bytes
+    png: bytes
+
+
+@dataclass(frozen=True)
+class Section:
+    """A section of the report.
+
+    Parameters
+    ----------
+    title : str
+        Its heading.
+    text : tuple of str
+        Paragraphs before the tables and figures.
+    tables : tuple of Table
+        Its tables.
+    figures : tuple of Figure
+        Its figures.
+    remarks : tuple of str
+        How the numbers were made and what they do not say.
+    skipped : tuple of (str, str)
+        Runs that it could not use, and why.
+    """
+
+    title: str
+    text: tuple[str, ...] = ()
+    tables: tuple[Table, ...] = ()
+    figures: tuple[Figure, ...] = ()
+    remarks: tuple[str, ...] = ()
+    skipped: tuple[tuple[str, str], ...] = ()
+
+
+def find_sections() -> list[ModuleType]:
+    """Find the modules that make a section, in the order of the page."""
+    return [module for module in _find("table*.py", "figure_*.py") if hasattr(module, "section")]
+
+
+def find_bench_figures() -> list[ModuleType]:
+    """Find the modules that draw a figure of a benchmark, in the order of the page."""
+    return _find("bench/figure_*.py")
+
+
+def _find(*patterns: str) -> list[ModuleType]:
+    """Find modules of pipelines whose files are called so, in the order of their `ORDER`."""
+    top = Path(__file__).parents[1]
+    paths = sorted(path for pattern in patterns for path in top.rglob(pattern))
+    names = [".".join(path.relative_to(top).with_suffix("").parts) for path in paths]
+    modules = [importlib.import_module(f"gapath.pipelines.{name}") for name in names]
+    return sorted(modules, key=lambda module: module.ORDER)
+
+
+def _escape(text: str) -> str:
+    """Write text for LaTeX."""
+    for plain, latex in (
+        ("\\", r"\textbackslash "), ("&", r"\&"), ("%", r"\%"), ("$", r"\$"), ("#", r"\#"),
+        ("_", r"\_"), ("{", r"\{"), ("}", r"\}"), ("~", r"\textasciitilde "), ("^", r"\^{}"),
+        ("∞", r"$\infty$"), ("\N{EN DASH}", "--"), ("<", "$<$"), (">", "$>$"),
+        ("\N{THIN SPACE}", r"\,"), ("\N{NARROW NO-BREAK SPACE}", r"\,"),
+        ("\N{NO-BREAK SPACE}", "~"),
+    ):  # fmt: skip
+        text = text.replace(plain, latex)
+    return text

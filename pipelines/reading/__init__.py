@@ -1,0 +1,1 @@
+"""Run folders, trials and logs, as sections read them."""

@@ -1,0 +1,1 @@
+"""The command gapath-report and its pages."""

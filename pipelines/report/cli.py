@@ -1,0 +1,88 @@
+"""The command `gapath-report`."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from gapath.errors import InputError
+
+_EPILOG = """\
+commands:
+  gapath-report OUTPUTS [-o DIR]   write the report
+  gapath-report runs [OUTPUTS]     list the run folders: key, experiment, map, planner
+                                   or navigator, trials, state, date and size
+
+Runs that cannot be used are named, with the reason, and left out. A folder that is itself
+called "runs" is given as ./runs.
+"""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command `gapath-report`.
+
+    Parameters
+    ----------
+    argv : sequence of str, optional
+        The arguments; those of the process by default.
+
+    Returns
+    -------
+    int
+        The exit code: 0, or 2 for a folder that holds nothing to report.
+    """
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    try:
+        if arguments[:1] == ["runs"]:
+            _list(_runs_parser().parse_args(arguments[1:]).outputs)
+        else:
+            chosen = _report_parser().parse_args(arguments)
+            _report(chosen.outputs, chosen.output or chosen.outputs / "report")
+    except InputError as error:
+        print(f"gapath-report: {error}", file=sys.stderr)
+        return 2
+    except BrokenPipeError:  # `gapath-report runs | head`
+        sys.stderr.close()
+    return 0
+
+
+def _report_parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        "gapath-report",
+        description="Make tables (CSV, Markdown, LaTeX), figures (SVG, PNG) and a web page from "
+        "whatever runs are there; another one, bench.html, if OUTPUTS/bench has benchmarks.",
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("outputs", type=Path, help="folder with <experiment>/<key>/, as `gapath` "
+                        "writes it")  # fmt: skip
+    parser.add_argument("-o", "--output", type=Path, metavar="DIR", help="where to write "
+                        "[OUTPUTS/report]")  # fmt: skip
+    return parser
+
+
+def _runs_parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser("gapath-report runs", description="List the run folders.")
+    parser.add_argument("outputs", type=Path, nargs="?", default=Path("outputs"), help="folder "
+                        "with <experiment>/<key>/ [outputs]")  # fmt: skip
+    return parser
+
+
+def _list(outputs: Path) -> None:
+    from tabulate import tabulate
+
+    from gapath.pipelines.reading.runs import find_runs, summary
+
+    print(tabulate(summary(find_runs(outputs)), headers="keys", disable_numparse=True))
+
+
+def _report(outputs: Path, folder: Path) -> None:
+    from gapath.pipelines.report.report import (
+        make_report,  # pandas and matplotlib take a second to start
+    )
+
+    files, skipped = make_report(outputs, folder)
+    for run, reason in skipped:
+        print(f"left out {run}: {reason}", file=sys.stderr)
+    print(f"{len(files)} files in {folder}")
+    print(f"open {files[-1].resolve()}")

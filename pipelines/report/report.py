@@ -1,0 +1,143 @@
+"""The report: every table and figure as files, and all of them on one page."""
+
+import os
+import platform
+from collections.abc import Iterable, Sequence
+from importlib.metadata import version
+from pathlib import Path
+from types import ModuleType
+
+import pandas as pd
+from tqdm import tqdm
+
+from gapath.errors import InputError, require
+from gapath.pipelines.page.page import Part, files_of, render
+from gapath.pipelines.page.section import find_sections
+from gapath.pipelines.reading.collect import Skipped, read_trials
+from gapath.pipelines.reading.runs import Run, find_runs
+from gapath.pipelines.report.bench import make_bench_page
+from gapath.pipelines.report.command import as_sweeps
+from gapath.store.durable import write_whole
+
+
+def make_report(outputs: Path, folder: Path) -> tuple[list[Path], list[Skipped]]:
+    """Write tables, figures and the pages from all runs and benchmarks below a folder.
+
+    Parameters
+    ----------
+    outputs : Path
+        The folder that holds ``<experiment>/<key>/`` and ``bench/``.
+    folder : Path
+        Where to write; made if it does not exist.
+
+    Returns
+    -------
+    files : list of Path
+        What was written, the page ``index.html`` last; ``bench.html`` where there are no runs.
+    skipped : list of Skipped
+        The runs that were left out, and why.
+
+    Raises
+    ------
+    InputError
+        If there is no such folder, or neither a run nor benchmarks in it that can be used.
+    """
+    files, skipped = make_bench_page(outputs / "bench")
+    try:
+        more, skipped = _runs_page(outputs, bool(files), skipped)
+        files += more
+    except InputError as error:
+        if not files:
+            raise
+        skipped.append(Skipped("runs", str(error)))
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, content in files:
+            write_whole(folder / name, content)
+    except OSError as error:
+        raise InputError(folder, error.strerror, "a folder that can be written") from error
+    return [folder / name for name, _ in files], skipped
+
+
+def _runs_page(
+    outputs: Path, bench: bool, skipped: list[Skipped]
+) -> tuple[list[tuple[str, bytes]], list[Skipped]]:
+    """Make the page of the runs, with a link to the benchmarks' and what was left out of that."""
+    runs = find_runs(outputs)
+    plans, drives, unusable = read_trials(runs)
+    first = f"; {unusable[0].run}: {unusable[0].reason}" if unusable else ""
+    require(len(plans) + len(drives) > 0, outputs, f"{len(runs)} runs of which none can be used"
+            f"{first}", "a finished run")  # fmt: skip
+    skipped = skipped + unusable
+    runs = _runs_of([plans, drives], runs)
+    parts = []
+    modules = find_sections()
+    for module in tqdm(modules, "sections", disable=None):
+        trials = {"plan": plans, "drive": drives}[module.TASK]
+        if module.EXPERIMENT is None:
+            wanted = {other.EXPERIMENT for other in modules if other.TASK == module.TASK}
+            mine = trials[~trials["experiment"].isin(wanted)]
+        else:
+            mine = trials[trials["experiment"] == module.EXPERIMENT]
+        part = _part(module, mine, runs)
+        if part is not None:
+            parts.append(part)
+            skipped += [Skipped(*entry) for entry in part.section.skipped]
+    skipped = list(dict.fromkeys(skipped))  # two figures may read the same log
+    frames = [plans, drives]
+    page = render(
+        "report.html.j2",
+        parts=parts,
+        bench=bench,
+        trials=sum(map(len, frames)),
+        runs=runs,
+        reconstructed=any((frame["map_source"] == "reconstructed").any() for frame in frames),
+        skipped=skipped,
+        versions=_versions(runs),
+        machine=_machine(),
+        made=max(run.date for run in runs)[:16].replace("T", " "),
+    )
+    files = [file for part in parts for file in files_of(part.section)]
+    return [*files, ("index.html", page.encode())], skipped
+
+
+def _runs_of(trials: Iterable[pd.DataFrame], runs: Sequence[Run]) -> list[Run]:
+    """Give the runs that the trials come from."""
+    used = {key for frame in trials for key in frame["key"]}
+    return [run for run in runs if run.folder.name in used]
+
+
+def _part(module: ModuleType, trials: pd.DataFrame, runs: Sequence[Run]) -> Part | None:
+    """Ask a module for its section; None where it has nothing to show."""
+    runs = _runs_of([trials], runs)
+    section = module.section(trials, runs) if len(trials) else None
+    if section is None:
+        return None
+    commands = as_sweeps(run.manifest["command"] for run in runs)
+    return Part(module.__name__.rpartition(".")[2], section, commands)
+
+
+def _versions(runs: Sequence[Run]) -> list[tuple[str, str]]:
+    """Give each program with its version in the runs; several where the runs differ."""
+    names = sorted({name for run in runs for name in run.manifest["versions"]})
+    return [
+        (name, ", ".join(sorted({str(run.manifest["versions"].get(name, "?")) for run in runs})))
+        for name in names
+    ]
+
+
+def _machine() -> list[tuple[str, str]]:
+    model = platform.processor() or platform.machine()
+    cpuinfo = Path("/proc/cpuinfo")
+    if cpuinfo.exists():
+        for line in cpuinfo.read_text(encoding="utf-8", errors="replace").splitlines():
+            if line.startswith("model name"):
+                model = line.partition(":")[2].strip()
+                break
+    return [
+        ("processor", model),
+        ("cores", str(os.cpu_count())),
+        ("system", f"{platform.system()} {platform.machine()}"),
+        ("Python", platform.python_version()),
+        ("gapath", version("gapath")),
+    ]

@@ -1,0 +1,1 @@
+"""Sections for any experiment that no paper has."""

@@ -1,0 +1,296 @@
+"""The ``gapath-log`` command, in process."""
+
+import dataclasses
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from gapath.commands import log as log_cli
+from gapath.events import (
+    DriveFinished,
+    Evolved,
+    RunFinished,
+    RunStarted,
+    Stepped,
+    TrialFinished,
+    TrialStarted,
+)
+from gapath.grid import GridMap
+from gapath.problem import Evolution, PlanStatus, Problem
+from gapath.recorders import mcap
+
+
+def run_events(trials=30):
+    """Give the events of a run on an empty map; every third trial finds nothing."""
+    grid = GridMap("leer", np.full((4, 6), 0.5), resolution=0.1)
+    path = np.array([[0, 0], [1, 1], [2, 1]], dtype=np.int32)
+    yield RunStarted(
+        "table1", "ga3", "plan", Problem(grid, (0, 0), (2, 1)), 7, trials, "seed: 7\n",
+        {"gapath": "0.1.0"}, path, 1.5,
+    )  # fmt: skip
+    for trial in range(trials):
+        step = 2 * trial
+        best, points = np.array([np.nan, 1.5]), np.zeros((2, 2, 2), dtype=np.int32)
+        genes = points.reshape(2, 4)
+        yield TrialStarted(step, trial, 7)
+        yield Evolved(step, trial, 0, Evolution(best, best, genes, points, "control_points"))
+        status = PlanStatus.NOT_FOUND if trial % 3 == 2 else PlanStatus.FOUND
+        walked = path if status is PlanStatus.FOUND else path[:0]
+        yield TrialFinished(step + 2, trial, status, 1.5, 2, 60, 0, walked)
+    yield RunFinished(2 * trials, trials, 2 * trials // 3)
+
+
+def drive_events(seconds=1e-4):
+    """Give the events of two drives on an empty map; the second one overruns."""
+    grid = GridMap("leer", np.full((4, 6), 0.5))
+    path = np.array([[0, 0], [1, 1]], dtype=np.int32)
+    settings = "task: drive\ndrive:\n  sensor: {range: 1}\n  unknown_weight: 0.5\n"
+    yield RunStarted(
+        "drives", "kg18", "drive", Problem(grid, (0, 0), (1, 1)), 7, 2, settings,
+        {"gapath": "0.1.0"}, path, 1.0,
+    )  # fmt: skip
+    fields, entries = path[1:], np.array([1 << 15], dtype=np.int32)
+    for trial in range(2):
+        step = 2 * trial
+        yield TrialStarted(step, trial, 7)
+        yield Stepped(step, trial, (0, 0), 1, 0, fields, entries, seconds)
+        yield Stepped(step + 1, trial, (1 - trial,) * 2, 1, 0, fields[:0], entries[:0], seconds)
+        yield DriveFinished(step + 1, trial, 2 * trial, 1)
+    yield RunFinished(4, 2, 1)
+
+
+def logged(events, folder):
+    recorder = mcap.Recorder(flush_every=10)
+    recorder.open(str(folder))
+    for event in events:
+        recorder.record(event)
+    recorder.close()
+    return folder / "run.mcap"
+
+
+@pytest.fixture
+def log(tmp_path):
+    return logged(run_events(), tmp_path)
+
+
+@pytest.fixture
+def drive_log(tmp_path):
+    return logged(drive_events(), tmp_path)
+
+
+@pytest.fixture
+def cut(log):
+    """Give what a killed run leaves."""
+    part = log.with_name("run.mcap.part")
+    part.write_bytes(log.read_bytes()[: log.stat().st_size // 2])
+    log.unlink()
+    return part
+
+
+@pytest.fixture
+def replay(monkeypatch):
+    """Let the run that is done again be whatever a test wants."""
+    module = SimpleNamespace(replay_events=lambda run: list(run_events())[1:])
+    monkeypatch.setitem(sys.modules, "gapath.runs.experiment", module)
+    return module
+
+
+def call(capsys, *argv):
+    code = log_cli.main([str(word) for word in argv])
+    printed = capsys.readouterr()
+    assert "Traceback" not in printed.err
+    return code, printed.out, printed.err
+
+
+def test_info_of_a_whole_log(log, capsys):
+    code, out, err = call(capsys, "info", log)
+    assert (code, err) == (0, "")
+    lines = {line.split(":")[0]: line for line in out.splitlines()}
+    assert lines["state"].endswith(" whole")
+    assert lines["trials"].endswith("30 of 30: 20 found, 10 not_found")
+    assert "leer, instance 0, 6 x 4 fields of 0.1 m" in lines["map"]
+    assert "(0, 0) to (2, 1)" in lines["problem"]
+    assert "  /ga_run       30" in out.splitlines()
+    assert "  seed: 7" in out.splitlines()
+
+
+def test_info_of_drives(drive_log, capsys):
+    _, out, _ = call(capsys, "info", drive_log)
+    lines = {line.split(":")[0]: line for line in out.splitlines()}
+    assert lines["trials"].endswith("2 of 2: 1 reached, 1 overran")
+    assert lines["navigator"].endswith(" kg18")
+    assert lines["shortest"].endswith(" 1 steps possible")
+    assert "  /drive_step   4" in out.splitlines()
+
+
+def test_verify_of_drives_does_not_compare_wall_time(drive_log, replay, capsys):
+    replay.replay_events = lambda run: list(drive_events(seconds=5.0))[1:]
+    assert call(capsys, "verify", drive_log)[0] == 0
+
+    def elsewhere():
+        for event in list(drive_events())[1:]:
+            if isinstance(event, Stepped) and event.step == 3:
+                event = dataclasses.replace(event, place=(0, 1))
+            yield event
+
+    replay.replay_events = lambda run: elsewhere()
+    code, out, _ = call(capsys, "verify", drive_log)
+    assert code == 1
+    assert "trial 1, step 3, Stepped.place: (0, 0) in the log, (0, 1) now" in out
+
+
+def test_rerun_of_drives(drive_log, capsys):
+    code, out, _ = call(capsys, "rerun", drive_log, "--trials", "1")
+    assert (code, out) == (0, f"{drive_log.with_name('trial-1.rrd')}\n")
+
+
+def test_info_of_a_log_that_was_cut_off(cut, capsys):
+    code, out, _ = call(capsys, "info", cut)
+    assert code == 0
+    assert "cut off or damaged" in out
+    assert f"gapath-log salvage {cut}" in out
+
+
+def test_salvage_then_info(cut, capsys):
+    count = sum(1 for _ in mcap.read_prefix(cut))
+    code, out, _ = call(capsys, "salvage", cut)
+    whole = cut.with_suffix("")
+    assert (code, out) == (0, f"{whole}: {count} events saved and read back\n")
+    _, out, _ = call(capsys, "info", whole)
+    assert "whole, but the run was interrupted" in out
+
+
+def test_salvage_names_its_output(cut, capsys):
+    damaged = cut.rename(cut.with_name("a.mcap"))
+    assert call(capsys, "salvage", damaged)[0] == 0
+    assert damaged.with_name("a.salvaged.mcap").is_file()
+    other = damaged.with_name("other.mcap")
+    assert call(capsys, "salvage", damaged, "-o", other)[0] == 0
+    assert other.is_file()
+
+
+def test_verify_of_what_is_reproduced(log, replay, capsys):
+    code, out, _ = call(capsys, "verify", log)
+    assert (code, out) == (0, f"{log}: reproduced, 91 events are equal\n")
+
+
+def test_verify_of_an_interrupted_run_compares_what_is_there(cut, replay, capsys):
+    call(capsys, "salvage", cut)
+    code, out, _ = call(capsys, "verify", cut.with_suffix(""))
+    assert code == 0
+    assert "interrupted" in out
+    assert "reproduced" in out
+
+
+def changed(number, **fields):
+    def events():
+        for index, event in enumerate(run_events()):
+            yield dataclasses.replace(event, **fields) if index == number else event
+
+    return events
+
+
+def other_gene():
+    for event in run_events():
+        if isinstance(event, Evolved) and event.trial == 4:
+            genes = event.evolution.chromosomes.copy()
+            genes[1, 2] = 9
+            event = dataclasses.replace(
+                event, evolution=event.evolution._replace(chromosomes=genes)
+            )
+        yield event
+
+
+DIFFERENCES = {
+    "cost": (changed(3, cost=2.5), "trial 0, step 2, TrialFinished.cost: 1.5 in the log, 2.5 now"),
+    "gene": (other_gene, "trial 4, step 8, Evolved.evolution.chromosomes[1, 2]: 0 in the log, 9"),
+    "path": (
+        changed(3, path=np.zeros((1, 2), dtype=np.int32)),
+        "TrialFinished.path: shape (3, 2) in the log, (1, 2) now",
+    ),
+    "status": (changed(3, status=PlanStatus.INFEASIBLE), "TrialFinished.status: <PlanStatus.FOUND"),
+    "shorter": (lambda: list(run_events())[:-1], "RunFinished in the log, nothing now"),
+    "longer": (lambda: [*run_events(), TrialStarted(99, 30, 7)], "nothing in the log"),
+    "kind": (lambda: [next(run_events()), RunFinished(0, 0, 0)], "TrialStarted in the log, RunFin"),
+}
+
+
+@pytest.mark.parametrize(("events", "message"), DIFFERENCES.values(), ids=DIFFERENCES)
+def test_verify_names_the_first_difference(events, message, log, replay, capsys):
+    replay.replay_events = lambda run: list(events())[1:]
+    code, out, _ = call(capsys, "verify", log)
+    assert code == 1
+    assert "differs after" in out and message in out
+
+
+def test_rerun_makes_recordings(log, capsys, tmp_path):
+    folder = tmp_path / "new" / "folder"
+    code, out, _ = call(capsys, "rerun", log, "--trials", "0,3", "-o", folder)
+    assert code == 0
+    assert out.splitlines() == [str(folder / "trial-0.rrd"), str(folder / "trial-3.rrd")]
+    assert (folder / "trial-3.rrd").stat().st_size > 1000
+    assert call(capsys, "rerun", log)[1] == f"{log.with_name('trial-0.rrd')}\n"
+
+
+@pytest.mark.parametrize("code", [0, 1])
+def test_view_starts_the_viewer_on_this_machine_only(code, log, capsys, monkeypatch):
+    started = []
+
+    def viewer(command, check):
+        started.append((command, Path(command[-1]).read_bytes()[:3]))
+        return SimpleNamespace(returncode=code)
+
+    monkeypatch.setattr(subprocess, "run", viewer)
+    result, _, err = call(capsys, "view", log)
+    (command, magic), *_ = started
+    assert command[1:-1] == ["-m", "rerun_cli", "--bind", "127.0.0.1"]
+    assert magic == b"RRF"
+    assert result == code
+    assert ("needs a display" in err) == bool(code)
+
+
+BAD = {
+    "missing": (lambda log: ["info", log.with_name("no.mcap")], "no.mcap"),
+    "missing to view": (lambda log: ["view", log.with_name("no.mcap")], "no.mcap"),
+    "folder": (lambda log: ["verify", log.parent], "readable file"),
+    "trial": (lambda log: ["rerun", log, "--trials", "30"], "recorder.rerun.trials"),
+    "output exists": (lambda log: ["salvage", log, "-o", log], "exists"),
+    "no folder": (lambda log: ["salvage", log, "-o", log / "x" / "y.mcap"], "y.mcap"),
+    "yaml": (lambda log: ["info", __file__], "test_log_cli.py"),
+}
+
+
+@pytest.mark.parametrize(("argv", "named"), BAD.values(), ids=BAD)
+def test_bad_input_is_one_line_and_exit_code_2(argv, named, log, replay, capsys):
+    before = sorted(log.parent.iterdir())
+    code, out, err = call(capsys, *argv(log))
+    assert (code, out) == (2, "")
+    assert named in err and err.count("\n") == 1
+    assert sorted(log.parent.iterdir()) == before
+
+
+@pytest.mark.parametrize("argv", [["rerun", "x", "--trials", "a"], [], ["info"], ["nothing", "x"]])
+def test_wrong_usage_exits_with_2(argv, capsys):
+    with pytest.raises(SystemExit) as stopped:
+        log_cli.main(argv)
+    assert stopped.value.code == 2
+
+
+def test_help_lists_the_commands(capsys):
+    with pytest.raises(SystemExit) as stopped:
+        log_cli.main(["--help"])
+    assert stopped.value.code == 0
+    out = capsys.readouterr().out
+    assert all(f"    {name} " in out for name in ("info", "verify", "salvage", "rerun", "view"))
+
+
+def test_info_into_a_closed_pipe_is_no_error(log):
+    command = [sys.executable, "-m", "gapath.commands.log", "info", str(log)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        process.stdout.close()
+        assert process.stderr.read() == b""
+        assert process.wait() == 0

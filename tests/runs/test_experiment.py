@@ -1,0 +1,136 @@
+"""From a run to files on disk, and from the log back to the run."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pyarrow.parquet as pq
+import pytest
+
+from gapath.commands import log as log_cli
+from gapath.components import build, yaml_values
+from gapath.mapio.reconstructed import Reader, generate
+from gapath.planning.shortest_path import shortest_path
+from gapath.problem import Problem
+from gapath.recorders.mcap import read_events
+from gapath.runs import config
+from gapath.runs.experiment import execute, replay_events
+from gapath.store import runfolder
+from gapath.tasks.plan import PlanTask
+
+
+def make_run(folder, planner="ga3", map_class="kg18_test2", trials=3, recorders=("mcap",)):
+    grid = Reader(map_class, 0).read()
+    settings = yaml_values("planner", planner)
+    return config.Run(
+        "test",
+        planner,
+        Problem(grid, grid.start, grid.target),
+        PlanTask(build("planner", settings, "planner")),
+        [build("recorder", yaml_values("recorder", name), name) for name in recorders],
+        11,
+        trials,
+        f"task: plan\nplanner: {json.dumps(settings)}\n",
+        str(folder),
+        False,
+    )
+
+
+@pytest.mark.parametrize("planner", ["ga1", "ga3", "astar", "dijkstra"])
+def test_a_log_says_enough_to_do_the_run_again(planner, tmp_path, capsys):
+    outcome = execute(make_run(tmp_path, planner), "test")
+    log = outcome.folder / "run.mcap"
+    events = list(read_events(log))
+    again = list(replay_events(events[0]))
+    assert [type(event) for event in events[1:]] == [type(event) for event in again]
+    assert log_cli.main(["verify", str(log)]) == 0
+
+
+def test_rows_and_log_agree(tmp_path):
+    run = make_run(tmp_path, "ga1", "kg18_test3", trials=20)
+    optimum = shortest_path(run.problem).cost
+    outcome = execute(run, "test")
+    rows = pq.read_table(outcome.folder / "trials.parquet").to_pylist()
+    finished = [e for e in read_events(outcome.folder / "run.mcap") if hasattr(e, "status")]
+    assert len(rows) == len(finished) == 20
+    assert {row["status"] for row in rows} == {"found", "not_found"}
+    for row, event in zip(rows, finished, strict=True):
+        assert (row["status"], row["cost"]) == (event.status.name.lower(), event.cost)
+        assert (row["epochs"], row["evaluations"]) == (event.epochs, event.evaluations)
+        assert row["feasible"] == (len(event.path) > 0)
+        assert row["optimal_cost"] == optimum
+        if row["feasible"]:
+            assert row["optimality_ratio"] == pytest.approx(row["cost"] / optimum)
+
+
+def test_other_settings_maps_and_code_are_other_runs(monkeypatch):
+    grid, other = generate("kg18_test1", 0), generate("kg18_test1", 1)
+    problem = Problem(grid, grid.start, grid.target)
+    keys = {
+        runfolder.run_key("a: 1", "ga1", problem),
+        runfolder.run_key("a: 2", "ga1", problem),
+        runfolder.run_key("a: 1", "ga2", problem),
+        runfolder.run_key("a: 1", "ga1", Problem(other, grid.start, grid.target)),
+        runfolder.run_key("a: 1", "ga1", Problem(grid, grid.start, (97, 24))),
+    }
+    monkeypatch.setattr(runfolder, "code_hash", lambda: "other")
+    keys.add(runfolder.run_key("a: 1", "ga1", problem))
+    assert len(keys) == 6
+
+
+def test_the_same_setting_with_other_code_or_more_trials_is_the_same_setting(monkeypatch):
+    grid = generate("kg18_test1", 0)
+    problem = Problem(grid, grid.start, grid.target)
+    settings = "seed: 1\ntrials: {}\nrecorder: {}\n"
+    few = runfolder.setting_hash(settings.format(3, "mcap"), "ga1", problem)
+    monkeypatch.setattr(runfolder, "code_hash", lambda: "other")
+    assert runfolder.setting_hash(settings.format(9, "none"), "ga1", problem) == few
+    assert runfolder.setting_hash("seed: 2\n", "ga1", problem) != few
+
+
+def test_a_killed_run_leaves_nothing_that_looks_whole(tmp_path):
+    """The log that it leaves can be saved, and the same command does the run afterwards."""
+    code = (
+        "import sys, pathlib; sys.path.insert(0, sys.argv[1]); import test_experiment as t; "
+        "run = t.make_run(sys.argv[2], 'ga1', 'kg18_test4', trials=100_000); "
+        "t.execute(run, 'test')"
+    )
+    here = os.path.dirname(__file__)  # noqa: PTH120
+    process = subprocess.Popen([sys.executable, "-c", code, here, str(tmp_path)])
+    try:
+        deadline = time.monotonic() + 60
+        while not any(p.stat().st_size > 300_000 for p in tmp_path.rglob("run.mcap.part")):
+            assert process.poll() is None
+            assert time.monotonic() < deadline
+            time.sleep(0.05)
+    finally:
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+    (folder,) = (tmp_path / "test").iterdir()
+    assert json.loads((folder / "status.json").read_bytes())["state"] == "running"
+    assert not (folder / "run.mcap").exists()
+    assert not (folder / "manifest.json").exists()
+    with runfolder.RunFolder(folder).lock():  # nobody holds it: the run is dead
+        assert not runfolder.RunFolder(folder).is_whole()
+    saved = tmp_path / "saved.mcap"
+    assert log_cli.main(["salvage", str(folder / "run.mcap.part"), "-o", str(saved)]) == 0
+    assert sum(1 for _ in read_events(saved)) > 3
+
+
+def test_a_full_disk_is_a_failed_run(tmp_path, monkeypatch):
+    run = make_run(tmp_path, "ga1", recorders=("mcap", "rerun"))
+
+    def full(path, data):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("gapath.recorders.rerun.recording.write_part", full)
+    with pytest.raises(OSError, match="No space"):
+        execute(run, "test")
+    (folder,) = (tmp_path / "test").iterdir()
+    status = json.loads((folder / "status.json").read_bytes())
+    assert status["state"] == "failed"
+    assert "No space left" in status["message"]
+    assert not (folder / "run.mcap").exists()
