@@ -13,6 +13,8 @@ from gapath.commands import log as log_cli
 from gapath.events import (
     DriveFinished,
     Evolved,
+    Mode,
+    Outcome,
     RunFinished,
     RunStarted,
     Stepped,
@@ -57,9 +59,11 @@ def drive_events(seconds=1e-4):
     for trial in range(2):
         step = 2 * trial
         yield TrialStarted(step, trial, 7)
-        yield Stepped(step, trial, (0, 0), 1, 0, fields, entries, seconds)
-        yield Stepped(step + 1, trial, (1 - trial,) * 2, 1, 0, fields[:0], entries[:0], seconds)
-        yield DriveFinished(step + 1, trial, 2 * trial, 1)
+        yield Stepped(step, trial, (0, 0), 1, Mode.EXPLORE, fields, entries, seconds)
+        yield Stepped(
+            step + 1, trial, (1 - trial,) * 2, 1, Mode.EXPLORE, fields[:0], entries[:0], seconds
+        )
+        yield DriveFinished(step + 1, trial, Outcome(2 * trial), 1)
     yield RunFinished(4, 2, 1)
 
 
