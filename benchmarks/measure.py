@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
 import gapath
-from gapath.components import build, yaml_values
+from gapath.components import build
+from gapath.discovery import yaml_values
 from gapath.problem import Planner, Problem
 
 MAPS = ("kg18_test1", "kg18_test2", "kg18_test3", "kg18_test4")

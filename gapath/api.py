@@ -3,10 +3,10 @@
 from pathlib import Path
 from typing import Any
 
-from gapath.components import build, yaml_values
+from gapath.components import build
+from gapath.discovery import readers, yaml_values
 from gapath.errors import InputError, require
 from gapath.grid import Field, GridMap
-from gapath.mapio.file import kinds
 from gapath.planning.simulation import plan_once
 from gapath.problem import CornerCutting, Particular, Plan, Planner, Problem
 
@@ -34,7 +34,7 @@ def load_map(path: str | Path, **settings: Any) -> GridMap:
         If the file cannot be used, or a setting is unknown or out of range.
     """
     ending = str(path).lower()
-    formats = [kind for suffix, kind in kinds().items() if ending.endswith(suffix)]
+    formats = [kind for suffix, kind in readers().items() if ending.endswith(suffix)]
     if formats:
         settings["path"] = str(path)
     values = yaml_values("map", formats[0] if formats else str(path))

@@ -1,95 +1,13 @@
-"""Components by name: a YAML's ``kind`` and settings become an object.
-
-With `config` and `cli` the only place that knows OmegaConf and Hydra.
-"""
+"""A YAML's ``kind`` and settings become an object."""
 
 import dataclasses
-import importlib
-import pkgutil
-from importlib.resources import files
 from typing import Any, get_type_hints
 
-import yaml
 from omegaconf import DictConfig, ListConfig, OmegaConf
 from omegaconf.errors import ConfigKeyError, OmegaConfBaseException
 
+from gapath.discovery import kinds, load, yaml_values
 from gapath.errors import InputError, require
-
-PACKAGES = {
-    "map": "gapath.mapio",
-    "planner": "gapath.planners",
-    "navigator": "gapath.navigators",
-    "recorder": "gapath.recorders",
-}
-"""Configuration group -> the package whose modules its ``kind`` names."""
-
-TARGETS = {"map": "Reader", "planner": "Planner", "navigator": "Navigator", "recorder": "Recorder"}
-
-
-def yaml_names(group: str) -> list[str]:
-    """List the YAMLs of a group.
-
-    Parameters
-    ----------
-    group : str
-        A folder of ``conf``.
-
-    Returns
-    -------
-    list of str
-        File names without their ending.
-    """
-    folder = files("gapath.conf") / group
-    return sorted(path.name[:-5] for path in folder.iterdir() if path.name.endswith(".yaml"))
-
-
-def yaml_values(group: str, name: str) -> dict[str, Any]:
-    """Read a YAML of ``conf`` and those that its defaults list names.
-
-    Parameters
-    ----------
-    group : str
-        "map", "planner", "navigator" or "recorder".
-    name : str
-        For example "kg18_test3" or "ga3".
-
-    Returns
-    -------
-    dict
-        ``kind`` and the settings.
-
-    Raises
-    ------
-    InputError
-        If there is no such YAML.
-    """
-    names = yaml_names(group)
-    require(name in names, group, repr(name), f"one of {', '.join(names)}")
-    file = files("gapath.conf") / group / f"{name}.yaml"
-    own: dict[str, Any] = yaml.safe_load(file.read_text("utf-8"))
-    bases = [base for base in own.pop("defaults", []) if base != "_self_"]
-    values: dict[str, Any] = {}
-    for base in bases:
-        values |= yaml_values(group, base)
-    return values | own
-
-
-def kinds(group: str) -> list[str]:
-    """List the modules that a group's ``kind`` can name.
-
-    Parameters
-    ----------
-    group : str
-        "map", "planner", "navigator" or "recorder".
-
-    Returns
-    -------
-    list of str
-        Module names; those with a leading underscore are no components.
-    """
-    package = importlib.import_module(PACKAGES[group])
-    names = [module.name for module in pkgutil.iter_modules(package.__path__)]
-    return sorted(name for name in names if not name.startswith("_"))
 
 
 def build(group: str, values: dict[str, Any], where: str) -> Any:
@@ -106,8 +24,8 @@ def build(group: str, values: dict[str, Any], where: str) -> Any:
 
     Returns
     -------
-    Reader, Planner or Recorder
-        An instance of the class in the module that ``kind`` names.
+    Reader, Planner, Navigator or Recorder
+        An instance of the class that ``kind`` names.
 
     Raises
     ------
@@ -117,8 +35,7 @@ def build(group: str, values: dict[str, Any], where: str) -> Any:
     values = dict(values)
     kind = values.pop("kind", None)
     require(kind in kinds(group), f"{where}.kind", kind, f"one of {', '.join(kinds(group))}")
-    module = importlib.import_module(f"{PACKAGES[group]}.{kind}")
-    target = getattr(module, TARGETS[group])
+    target = load(group, str(kind))
     made = {
         name: with_planners(value, f"{where}.{name}")
         for name, value in checked(target, values, where).items()

@@ -5,6 +5,7 @@ planning trial takes one step for each epoch, and one if its planner has no epoc
 takes one for its first look and one for each step of the robot.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import Protocol, TypeAlias, runtime_checkable
@@ -13,7 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.grid import Field
-from gapath.problem import Evolution, Graph, PlanStatus, Problem
+from gapath.problem import Answer, Evolution, Graph, Problem
+
+Settings: TypeAlias = Mapping[str, str | int | float | bool | None]
+"""A run's settings, flat: "planner.population", "drive.sensor.range" -> value."""
 
 
 class Mode(IntEnum):
@@ -44,16 +48,18 @@ class RunStarted:
 
     Parameters
     ----------
-    experiment, planner : str
-        Names as in the configuration; the navigator's name where the task is to drive.
+    experiment : str
+        Its name.
+    method : str
+        Name of the planner or navigator, for people.
     task : str
-        "plan" or "drive".
+        Its name, of a module of `gapath.tasks`.
     problem : Problem
         Map, start, target and corner-cutting rule.
     seed, trials : int
         The run does trials 0 to trials - 1, with streams (seed, trial, call).
-    settings : str
-        The resolved configuration as YAML.
+    settings : mapping of str to str, int, float, bool or None
+        The resolved configuration, flat (`gapath.store.settings`).
     versions : dict of str to str
         Versions of gapath and of what it stands on.
     optimal_path : (n, 2) int32
@@ -64,12 +70,12 @@ class RunStarted:
     """
 
     experiment: str
-    planner: str
+    method: str
     task: str
     problem: Problem
     seed: int
     trials: int
-    settings: str
+    settings: Settings
     versions: dict[str, str]
     optimal_path: NDArray[np.int32] = field(repr=False)
     optimal_cost: float
@@ -105,16 +111,11 @@ class Surveyed:
 
 @dataclass(frozen=True, eq=False)
 class TrialFinished:
-    """A trial ended at this step with this plan."""
+    """A trial ended at this step with this answer."""
 
     step: int
     trial: int
-    status: PlanStatus
-    cost: float
-    epochs: int
-    evaluations: int
-    expansions: int
-    path: NDArray[np.int32] = field(repr=False)
+    answer: Answer
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,8 +164,8 @@ class Called:
         Number of the planner in its part's list.
     adopted : bool
         Whether its path became the current one.
-    status, cost, epochs, evaluations, expansions, path
-        As in `gapath.problem.Plan`.
+    answer : Answer
+        What it answered.
     """
 
     step: int
@@ -172,12 +173,7 @@ class Called:
     part: str
     index: int
     adopted: bool
-    status: PlanStatus
-    cost: float
-    epochs: int
-    evaluations: int
-    expansions: int
-    path: NDArray[np.int32] = field(repr=False)
+    answer: Answer
 
 
 @dataclass(frozen=True, eq=False)
@@ -241,6 +237,10 @@ class Recorder(Protocol):
     A dataclass whose fields are the settings of its YAML file in ``conf/recorder``.
     Files are written under a name that ends in ``.part`` until `close` renames them.
     """
+
+    @property
+    def records(self) -> bool:
+        """Whether it has any use for events; where nobody has, none are made."""
 
     def check(self, trials: int) -> None:
         """Raise InputError if a run of so many trials cannot be recorded as set."""

@@ -3,7 +3,7 @@
 import html
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from enum import IntEnum
 from functools import cached_property
 from typing import Any, NamedTuple, Protocol, runtime_checkable
@@ -147,8 +147,8 @@ def no_path() -> NDArray[np.int32]:
 
 
 @dataclass(frozen=True, eq=False)
-class Plan:
-    """A planner's answer.
+class Answer:
+    """What a planning query came to, as rows, events and logs have it.
 
     Parameters
     ----------
@@ -157,14 +157,54 @@ class Plan:
     path : (n, 2) int32
         Fields (x, y) from start to target, each a neighbour of the one before; empty
         unless the status is FOUND.
-    cost : float
-        KG18 eq. (5): the sum of the weights of the path's fields, start included; for a
-        genetic algorithm without success its best fitness, obstacles counted as VLN;
-        infinite where there is nothing to sum.
+    weights : float
+        The sum of the weights of the path's fields, start included; for a genetic algorithm
+        without success of its best path's, obstacles left out; infinite where there is nothing
+        to sum.
+    obstacles : int
+        Obstacle fields on the best path, a step that cuts a corner counted as one; 0 if it is
+        feasible. Less by `obstacles`, then by `weights`, is fitter.
+    vln : float
+        What the planner shows an obstacle field to cost (KG18 eq. (5)).
     epochs, evaluations : int
         Epochs of a genetic algorithm, and chromosomes whose fitness it computed.
     expansions : int
         Fields that a graph search expanded.
+    """
+
+    status: PlanStatus
+    path: NDArray[np.int32] = field(default_factory=no_path, repr=False)
+    weights: float = math.inf
+    obstacles: int = 0
+    vln: float = 0.0
+    epochs: int = 0
+    evaluations: int = 0
+    expansions: int = 0
+
+    @property
+    def cost(self) -> float:
+        """KG18 eq. (5) for people: the sum of the weights, each obstacle field counted as VLN."""
+        return self.obstacles * self.vln + self.weights
+
+    @property
+    def feasible(self) -> bool:
+        """True if the path joins start and target without an obstacle."""
+        return self.status is PlanStatus.FOUND
+
+    @property
+    def answer(self) -> "Answer":
+        """The answer alone, without what a planner can tell besides."""
+        return Answer(*(getattr(self, each.name) for each in fields(Answer)))
+
+
+@dataclass(frozen=True, eq=False)
+class Plan(Answer):
+    """A planner's answer, and what it can tell of how it came to it.
+
+    Parameters
+    ----------
+    status, path, weights, obstacles, vln, epochs, evaluations, expansions
+        As of `Answer`.
     trace : callable, optional
         Computes the history of a genetic algorithm; called only if somebody wants it.
     lines : callable, optional
@@ -176,12 +216,6 @@ class Plan:
         Wall time of each stage in seconds, for a planner that has stages.
     """
 
-    status: PlanStatus
-    path: NDArray[np.int32] = field(default_factory=no_path, repr=False)
-    cost: float = math.inf
-    epochs: int = 0
-    evaluations: int = 0
-    expansions: int = 0
     trace: Callable[[], Evolution] | None = field(default=None, repr=False)
     lines: Callable[[], NDArray[np.int32]] | None = field(default=None, repr=False)
     survey: Callable[[], Graph] | None = field(default=None, repr=False)
@@ -191,11 +225,6 @@ class Plan:
     def evolution(self) -> Evolution | None:
         """The history of a genetic algorithm, epoch by epoch; None for other planners."""
         return self.trace() if self.trace else None
-
-    @property
-    def feasible(self) -> bool:
-        """True if the path joins start and target without an obstacle."""
-        return self.status is PlanStatus.FOUND
 
     def _repr_html_(self) -> str:
         rows = {
@@ -247,6 +276,10 @@ class Planner(Protocol):
 
     A frozen dataclass whose fields are the settings of its YAML file in ``conf/planner``.
     """
+
+    @property
+    def exact(self) -> bool:
+        """True if it finds a path wherever there is one."""
 
     def plan(self, problem: Query, stream: Stream) -> Plan:
         """Plan a path; every random number comes from the stream.

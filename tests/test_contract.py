@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from gapath import components
-from gapath.components import yaml_values
+from gapath.discovery import yaml_values
 from gapath.errors import InputError
 from gapath.events import Recorder, RunFinished
 from gapath.grid import GridMap
@@ -45,15 +45,15 @@ def make_problem(rule=CornerCutting.ALLOW):
 @pytest.mark.parametrize("group", ["map", "planner", "navigator", "recorder"])
 def test_every_module_has_a_yaml_and_every_yaml_a_module(group):
     named = {yaml_values(group, name)["kind"] for name in yamls(group)}
-    assert named == set(components.kinds(group))
+    assert named == set(discovery.kinds(group))
 
 
 @pytest.mark.parametrize("group", ["map", "planner", "navigator", "recorder"])
 def test_every_value_of_a_yaml_is_a_field_without_default(group):
     for name in yamls(group):
         values = yaml_values(group, name)
-        module = import_module(f"{components.PACKAGES[group]}.{values.pop('kind')}")
-        target = getattr(module, components.TARGETS[group])
+        module = import_module(f"{discovery.PACKAGES[group]}.{values.pop('kind')}")
+        target = getattr(module, discovery.OFFERS[group])
         wanted = inspect.signature(target).parameters
         assert set(values) == set(wanted), name
         assert all(p.default is inspect.Parameter.empty for p in wanted.values()), name

@@ -15,7 +15,8 @@ import pytest
 from mcap.reader import make_reader
 
 from gapath.api import load_map
-from gapath.components import build, yaml_values
+from gapath.components import build
+from gapath.discovery import yaml_values
 from gapath.grid import GridMap
 from gapath.mapio.reconstructed import CLASSES
 from gapath.problem import Problem

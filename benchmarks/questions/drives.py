@@ -22,7 +22,8 @@ from typing import Any
 import yaml
 
 from benchmarks.measure import Calls, Row, interleave, make_problem, quartiles, timed
-from gapath.components import build, yaml_values
+from gapath.components import build
+from gapath.discovery import yaml_values
 from gapath.driving.drive import Drive, Sensor, drive
 from gapath.driving.navigation import Query
 from gapath.driving.told import drive_events

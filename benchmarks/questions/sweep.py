@@ -13,7 +13,7 @@ from dataclasses import replace
 import yaml
 
 from benchmarks.measure import MAPS, SETTINGS, Row, make_planner, make_problem
-from gapath.components import yaml_values
+from gapath.discovery import yaml_values
 from gapath.problem import Problem
 from gapath.recorders import mcap
 from gapath.runs.config import Run

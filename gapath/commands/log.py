@@ -24,6 +24,8 @@ from gapath.events import (
     TrialFinished,
 )
 from gapath.recorders import mcap
+from gapath.store.settings import text_of
+from gapath.task import find_task
 
 _LOCAL = "127.0.0.1"  # a viewer also serves; never to other machines
 
@@ -100,19 +102,19 @@ def _info(arguments: argparse.Namespace) -> int:
     except InputError as error:
         run, ended, finished = _summary(mcap.read_prefix(path))
         state = f"cut off or damaged ({error.value}); save the rest: gapath-log salvage {path}"
-    problem, grid = run.problem, run.problem.map
+    task, problem, grid = find_task(run.task), run.problem, run.problem.map
     ends = ", ".join(f"{count} {end}" for end, count in finished.items())
     rows = {
         "file": f"{path}, {path.stat().st_size} bytes",
         "state": state,
         "experiment": run.experiment,
         "task": run.task,
-        "navigator" if run.task == "drive" else "planner": run.planner,
+        task.groups[0]: run.method,
         "map": f"{grid.name}, instance {grid.instance}, {grid.cols} x {grid.rows} fields of "
         f"{grid.resolution:g} m ({grid.source})",
         "problem": f"{problem.start} to {problem.target}, "
         f"corner cutting: {problem.corner_cutting.name.lower()}",
-        **_optimum(run),
+        **task.told_optimum(run),
         "seed": str(run.seed),
         "trials": f"{finished.total()} of {run.trials}" + (f": {ends}" if ends else ""),
         "versions": ", ".join(f"{name} {version}" for name, version in run.versions.items()),
@@ -123,17 +125,9 @@ def _info(arguments: argparse.Namespace) -> int:
     for topic, count in sorted(mcap.count_messages(path).items()):
         print(f"  {topic:14}{count}")
     print("settings:")
-    for line in run.settings.splitlines():
+    for line in text_of(run.settings).splitlines():
         print(f"  {line}")
     return 0
-
-
-def _optimum(run: RunStarted) -> dict[str, str]:
-    """Say what the trials are held against."""
-    if run.task == "plan":
-        return {"optimal cost": f"{run.optimal_cost:g}"}
-    steps = len(run.optimal_path) - 1
-    return {"shortest": f"{steps} steps possible" if steps >= 0 else "no way to the target"}
 
 
 def _summary(events: Iterator[Event]) -> tuple[RunStarted, bool, Counter[str]]:
@@ -143,7 +137,7 @@ def _summary(events: Iterator[Event]) -> tuple[RunStarted, bool, Counter[str]]:
     finished: Counter[str] = Counter()
     for last in events:
         if isinstance(last, TrialFinished):
-            finished[last.status.name.lower()] += 1
+            finished[last.answer.status.name.lower()] += 1
         elif isinstance(last, DriveFinished):
             finished[last.outcome.name.lower()] += 1
     return run, isinstance(last, RunFinished), finished

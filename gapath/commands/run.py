@@ -4,23 +4,27 @@ import os
 import shlex
 import sys
 import traceback
-from typing import Any, NoReturn
+from typing import NoReturn
 
 from hydra import compose
 from hydra import main as hydra_main
+from hydra.core.config_search_path import ConfigSearchPath
 from hydra.core.global_hydra import GlobalHydra
 from hydra.core.hydra_config import HydraConfig
 from hydra.core.override_parser.overrides_parser import OverridesParser
+from hydra.core.plugins import Plugins
 from hydra.errors import HydraException
 from hydra.experimental.callback import Callback
+from hydra.plugins.search_path_plugin import SearchPathPlugin
 from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
-from gapath.errors import InputError
+from gapath.discovery import conf_packages, kinds
+from gapath.errors import InputError, require
 from gapath.runs.config import Run, conf_folder, make_run
-from gapath.runs.experiment import Outcome, execute
-from gapath.runs.naming import method_name
+from gapath.runs.experiment import Execution, execute
+from gapath.task import find_task
 
 BAD_INPUT, FAILED, INTERRUPTED = 2, 1, 130
 
@@ -29,6 +33,15 @@ BAD_CONFIGURATION = (InputError, HydraException, OmegaConfBaseException)
 
 class JobFailed(Exception):
     """A job failed and has said why; carries the exit code."""
+
+
+class OtherConfigurations(SearchPathPlugin):  # type: ignore[misc]
+    """Lets Hydra find the YAMLs of installed packages (`gapath.discovery`)."""
+
+    def manipulate_search_path(self, search_path: ConfigSearchPath) -> None:
+        """Add their packages behind gapath's own folder."""
+        for package in conf_packages()[1:]:
+            search_path.append("gapath", f"pkg://{package}")
 
 
 class SweepCheck(Callback):  # type: ignore[misc]
@@ -47,9 +60,12 @@ class SweepCheck(Callback):  # type: ignore[misc]
             parser = OverridesParser.create(config_loader=loader)
             parsed = parser.parse_overrides([*given, *config.hydra.overrides.task])
             for overrides in BasicSweeper.split_arguments(parsed, None)[0]:
-                config = compose("config", overrides=overrides)
+                config = compose("config", overrides=overrides, return_hydra_config=True)
+                choices = dict(config.hydra.runtime.choices)
+                OmegaConf.set_struct(config, False)
+                del config["hydra"]
                 check_used(overrides, config.task)
-                make_run(config, "")
+                make_run(config, choices)
         except Exception as error:
             sys.exit(complain(error))
         # Hydra would compose every job once more, only to see whether it can be composed.
@@ -68,9 +84,8 @@ def job(config: DictConfig) -> None:
     sweep = hydra.mode == RunMode.MULTIRUN
     overrides = list(hydra.overrides.task)
     try:
-        plain: Any = OmegaConf.to_container(config)
         check_used(overrides, config.task)
-        run = make_run(config, method_name(plain, hydra.runtime.choices))
+        run = make_run(config, hydra.runtime.choices)
         outcome = execute(run, command(overrides))
     except BAD_CONFIGURATION as error:
         fail(complain(error), sweep)
@@ -86,12 +101,15 @@ def job(config: DictConfig) -> None:
 
 def check_used(overrides: list[str], task: str) -> None:
     """Raise InputError if something was set on the command line that the task does not use."""
-    unused = {"plan": ("navigator", "drive"), "drive": ("planner",)}
+    users: dict[str, list[str]] = {}
+    for name in kinds("task"):
+        for group in find_task(name).groups:
+            users.setdefault(group, []).append(name)
     for override in overrides:
         key = override.partition("=")[0].lstrip("+~")
-        if key.partition(".")[0] in unused.get(task, ()):
-            other = "drive" if task == "plan" else "plan"
-            raise InputError(key, f"task={task}, which does not use it", f"task={other}")
+        able = users.get(key.partition(".")[0], [task])
+        good = " or ".join(f"task={name}" for name in able)
+        require(task in able, key, f"task={task}, which does not use it", good)
 
 
 def command(overrides: list[str]) -> str:
@@ -128,14 +146,14 @@ def complain(error: Exception) -> int:
     return BAD_INPUT
 
 
-def describe(run: Run, outcome: Outcome, short: bool) -> str:
+def describe(run: Run, outcome: Execution, short: bool) -> str:
     """Tell how a run ended.
 
     Parameters
     ----------
     run : Run
         What was done.
-    outcome : Outcome
+    outcome : Execution
         What came of it.
     short : bool
         One line instead of a table.
@@ -147,7 +165,7 @@ def describe(run: Run, outcome: Outcome, short: bool) -> str:
     """
     grid = run.problem.map
     instance = f"#{grid.instance}" if grid.instance else ""
-    what = f"{grid.name}{instance} {run.method}"
+    what = f"{grid.name}{instance} {run.method.name}"
     if outcome.state == "skipped":
         return f"{what}: skipped, {outcome.folder} is whole (force=true runs it again)"
     if outcome.state == "busy":
@@ -159,7 +177,7 @@ def describe(run: Run, outcome: Outcome, short: bool) -> str:
     lines: dict[str, object] = {
         "map": f"{grid.name}{instance}{marked}, {grid.cols} x {grid.rows} fields"
     }
-    lines["navigator" if run.task.name == "drive" else "planner"] = run.method
+    lines[run.task.groups[0]] = run.method.name
     lines |= run.task.summary(rows)
     table = "\n".join(f"{name:<14}{value}" for name, value in lines.items())
     files = "\n".join(f"  {outcome.folder / name}" for name in outcome.files)
@@ -168,6 +186,7 @@ def describe(run: Run, outcome: Outcome, short: bool) -> str:
 
 def main() -> None:
     """Run the command ``gapath``; exits with 0, 1 (a job failed) or 2 (bad input)."""
+    Plugins.instance().register(OtherConfigurations)
     os.environ["HYDRA_FULL_ERROR"] = "1"  # errors come here instead of being printed
     try:
         hydra_main(version_base="1.3", config_path=conf_folder(), config_name="config")(job)()

@@ -8,33 +8,22 @@ from numpy.typing import NDArray
 
 from gapath.driving.drive import Drive, Frame
 from gapath.events import Mode, Outcome
-from gapath.planning.metrics import path_metrics
-from gapath.problem import Plan
-from gapath.task import Batch
+from gapath.planning.path import path_weights
+from gapath.problem import Plan, PlanStatus
+from gapath.task import Batch, Row, head
 
 
 @dataclass(frozen=True)
-class DriveRow:
+class DriveRow(Row):
     """A row of ``trials.parquet``: a drive; those that failed are rows too.
 
     `ga_calls` counts the genetic algorithm's runs, `calls_a` to `calls_c` the calls of any
     planner by part; `replans` counts the steps in which the current path had met an obstacle,
-    `returns` how often return mode began, `stands` the steps without a move. The metrics are
-    those of the fields that the robot passed, in order.
+    `returns` how often return mode began, `stands` the steps without a move. `cost`, KG18 eq. (5),
+    and the metrics are those of the fields that the robot passed, in order.
     """
 
-    experiment: str
-    map: str
-    map_instance: int
-    map_source: str
-    width: int
-    height: int
-    start: str
-    target: str
-    corner_cutting: str
     navigator: str
-    seed: int
-    trial: int
     outcome: str
     reached: bool
     steps: int
@@ -50,16 +39,10 @@ class DriveRow:
     evaluations: int
     seen_fields: int
     cost: float
-    length: float
-    turns: int
-    clearance: float
-    curvature: float
     compute_time_s: float
 
 
-def drive_row(
-    batch: Batch, trial: int, driven: Drive, optimum: Plan, distances: NDArray[np.float64]
-) -> DriveRow:
+def drive_row(batch: Batch, trial: int, driven: Drive, optimum: Plan) -> DriveRow:
     """Sum a drive up.
 
     Parameters
@@ -72,47 +55,35 @@ def drive_row(
         The drive.
     optimum : Plan
         A path of fewest steps on the true map.
-    distances : (rows, cols) float64
-        `gapath.planning.metrics.clearances` of the true map.
 
     Returns
     -------
     DriveRow
         Its row.
     """
-    grid, frames = batch.problem.map, driven.frames
+    frames = driven.frames
+    reached = driven.outcome is Outcome.REACHED
     trail = _without_stands(frames)
-    metrics = path_metrics(grid, trail, distances)
-    calls = [call for frame in frames if frame.decision for call in frame.decision.calls]
-    modes = [frame.decision.mode for frame in frames if frame.decision]
+    passed = Plan(PlanStatus.FOUND, trail, path_weights(batch.problem.map, trail))
+    decisions = [frame.decision for frame in frames if frame.decision]
+    calls = [call for decision in decisions for call in decision.calls]
+    modes = [decision.mode for decision in decisions]
+    parts = [call.part for call in calls]
     steps = len(frames) - 1
     shortest = len(optimum.path) - 1 if optimum.feasible else math.nan
-    parts = [call.part for call in calls]
     return DriveRow(
-        experiment=batch.experiment,
-        map=grid.name,
-        map_instance=grid.instance,
-        map_source=grid.source,
-        width=grid.cols,
-        height=grid.rows,
-        start=str(batch.problem.start),
-        target=str(batch.problem.target),
-        corner_cutting=batch.problem.corner_cutting.name.lower(),
+        **head(batch, trial, passed),
         navigator=batch.method,
-        seed=batch.seed,
-        trial=trial,
         outcome=driven.outcome.name.lower(),
-        reached=driven.outcome is Outcome.REACHED,
+        reached=reached,
         steps=steps,
         shortest_steps=shortest,
-        steps_ratio=steps / shortest
-        if driven.outcome is Outcome.REACHED and shortest
-        else math.nan,
+        steps_ratio=steps / shortest if reached and shortest else math.nan,
         ga_calls=sum(call.plan.evaluations > 0 for call in calls),
         calls_a=parts.count("A"),
         calls_b=parts.count("B"),
         calls_c=parts.count("C"),
-        replans=sum(any(c.part == "C" for c in f.decision.calls) for f in frames if f.decision),
+        replans=sum(any(c.part == "C" for c in decision.calls) for decision in decisions),
         returns=sum(
             now is Mode.RETURN and before is not Mode.RETURN
             for before, now in zip([Mode.EXPLORE, *modes], modes, strict=False)
@@ -120,11 +91,7 @@ def drive_row(
         stands=steps - (len(trail) - 1),
         evaluations=sum(call.plan.evaluations for call in calls),
         seen_fields=len(np.unique(np.concatenate([frame.news for frame in frames]))),
-        cost=metrics.cost,
-        length=metrics.length,
-        turns=metrics.turns,
-        clearance=metrics.clearance,
-        curvature=metrics.curvature,
+        cost=passed.cost,
         compute_time_s=driven.compute_time_s,
     )
 

@@ -37,19 +37,13 @@ def drive_events(driven: Drive, cols: int, seed: int, trial: int, step: int) -> 
         if decision is not None:
             mode = decision.mode
             for call in decision.calls:
-                plan = call.plan
                 yield Called(
                     now,
                     trial,
                     call.part,
                     call.index,
                     call.adopted,
-                    plan.status,
-                    plan.cost,
-                    plan.epochs,
-                    plan.evaluations,
-                    plan.expansions,
-                    plan.path,
+                    call.plan.answer,
                 )
             new_path = path[:0] if decision.path is None else decision.path
             new_past = np.array(decision.past, dtype=np.int32).reshape(-1, 2)

@@ -110,7 +110,7 @@ class Navigator:
     @property
     def complete(self) -> bool:
         """Only with an exact planner last in part C; a genetic algorithm may miss."""
-        return getattr(self.replan[-1], "exact", False)
+        return bool(self.replan[-1].exact)
 
     def begin(self, query: Query) -> State:
         """Begin without a path, so that the first one comes from part C."""

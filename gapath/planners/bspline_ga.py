@@ -74,6 +74,8 @@ class Planner:
     clip_to_map: bool
     vln: float
 
+    exact = False
+
     def __post_init__(self) -> None:
         def check(name: str, good: bool, expected: str) -> None:
             require(good, f"planner.{name}", getattr(self, name), expected)
@@ -180,7 +182,9 @@ class Planner:
         return Plan(
             PlanStatus.FOUND if found else PlanStatus.NOT_FOUND,
             path=rasterise(result.chromosomes[-1], *self._basis) if found else no_path(),
-            cost=(key >> KEY_BITS) * self.vln + (key & (ONE_OBSTACLE - 1)) / SCALE,
+            weights=(key & (ONE_OBSTACLE - 1)) / SCALE,
+            obstacles=key >> KEY_BITS,
+            vln=self.vln,
             epochs=len(result.epochs),
             evaluations=evaluations(self.population, len(result.epochs)),
             trace=partial(self._evolution, result),

@@ -29,6 +29,8 @@ class Planner(Clearance):
 
     planner: Any
 
+    exact = False
+
     def check(self, problem: Query) -> None:
         """Refuse what either part refuses.
 

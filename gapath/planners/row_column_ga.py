@@ -65,6 +65,8 @@ class Planner:
     vln: float
     pad_to_square: bool
 
+    exact = False
+
     def __post_init__(self) -> None:
         def check(name: str, good: bool, expected: str) -> None:
             require(good, f"planner.{name}", getattr(self, name), expected)
@@ -146,7 +148,9 @@ class Planner:
         return Plan(
             PlanStatus.FOUND if found else PlanStatus.NOT_FOUND,
             path=polyline(frame.paths(result.chromosomes[-1:])[0]) if found else no_path(),
-            cost=(key >> KEY_BITS) * self.vln + (key & (ONE_OBSTACLE - 1)) / SCALE,
+            weights=(key & (ONE_OBSTACLE - 1)) / SCALE,
+            obstacles=key >> KEY_BITS,
+            vln=self.vln,
             epochs=len(result.epochs),
             evaluations=self.population * len(result.epochs),
             trace=partial(self._evolution, result, frame),

@@ -66,6 +66,8 @@ class Planner(Surveyor):
     parents_portion: float
     crossover_probability: float
 
+    exact = False
+
     def __post_init__(self) -> None:
         super().__post_init__()
 

@@ -26,6 +26,8 @@ class Planner(Surveyor):
 
     informed: bool
 
+    exact = False
+
     def plan(self, problem: Query, stream: Stream) -> Plan:
         """Make the graph and search it; the stream is not used.
 

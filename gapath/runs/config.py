@@ -1,41 +1,36 @@
 """From a composed configuration to a checked run."""
 
 import dataclasses
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field
 from importlib.resources import files
 from typing import Any
 
 from omegaconf import DictConfig, OmegaConf
 
-from gapath.components import build, typed, yaml_values
-from gapath.driving.drive import Sensor
-from gapath.driving.world import Changes
+from gapath.components import build, typed
+from gapath.discovery import kinds
 from gapath.errors import require
-from gapath.events import Recorder
+from gapath.events import Recorder, Settings
 from gapath.grid import GridMap
-from gapath.mapio import file
 from gapath.problem import CornerCutting, Problem
-from gapath.recorders import none
-from gapath.runs.naming import map_name
-from gapath.task import Task
-from gapath.tasks.drive import DriveTask
-from gapath.tasks.plan import PlanTask
+from gapath.runs.naming import Method, map_name, method_of
+from gapath.store.settings import flatten, nested
+from gapath.task import Task, find_task
 
 
 @dataclass
-class Settings:
-    """The root of the configuration, ``conf/config.yaml``.
+class Root:
+    """The root of the configuration, ``conf/config.yaml``, without the groups of tasks.
 
     Parameters
     ----------
     task : str
-        "plan" on a known map, or "drive" through an unknown one.
+        "plan" on a known map, "drive" through an unknown one, or another of `gapath.tasks`.
     name : str
         The experiment: run folders lie in ``<output>/<name>``.
-    map, planner, navigator, recorder : dict
-        The chosen components; a task uses the planner or the navigator.
-    drive : dict
-        `DriveSettings`.
+    map, recorder : dict
+        The chosen components.
     seed, trials : int
         Trials 0 to trials - 1 use the random streams (seed, trial).
     corner_cutting : str
@@ -45,15 +40,12 @@ class Settings:
     force : bool
         Run again what is there already.
     threads : int
-        Threads that plan the trials of a run; drives have one.
+        Threads that do the trials of a run, if the task has any use for them.
     """
 
     task: str
     name: str
     map: dict[str, Any]
-    planner: dict[str, Any]
-    navigator: dict[str, Any]
-    drive: dict[str, Any]
     recorder: dict[str, Any]
     seed: int
     trials: int
@@ -63,43 +55,8 @@ class Settings:
     threads: int
 
 
-@dataclass
-class DriveSettings:
-    """What a drive needs besides a map and a navigator.
-
-    Parameters
-    ----------
-    sensor : dict
-        `gapath.driving.drive.Sensor`.
-    changes : dict
-        `gapath.driving.world.Changes`.
-    step_limit : int
-        Steps after which a drive has overrun.
-    unknown_weight : float
-        What an unknown field counts.
-    known_map : str or None
-        A map file: what the robot knows before it starts.
-    """
-
-    sensor: dict[str, Any]
-    changes: dict[str, Any]
-    step_limit: int
-    unknown_weight: float
-    known_map: str | None
-
-    def __post_init__(self) -> None:
-        require(
-            1 <= self.step_limit <= 10**6,
-            "drive.step_limit",
-            self.step_limit,
-            "an integer from 1 to 1000000",
-        )
-        require(
-            0 <= self.unknown_weight < 1,
-            "drive.unknown_weight",
-            self.unknown_weight,
-            "a number in [0, 1)",
-        )
+HOW = ("output", "force", "threads")
+"""Settings of how to run, which change no result: no part of a run's settings."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,34 +67,34 @@ class Run:
     ----------
     experiment : str
         Name of the experiment.
-    method : str
-        Name of the planner's or navigator's YAML, with the values that were overridden.
+    method : Method
+        The planner or navigator: its YAML, and what differs from it.
     problem : Problem
         Map, start, target, corner-cutting rule.
     task : Task
-        To plan or to drive, and with what.
-    recorders : list of Recorder
+        What its trials are, and with what.
+    recorders : sequence of Recorder
         The recorders.
     seed, trials : int
         Trials 0 to trials - 1 use the random streams (seed, trial).
-    settings : str
-        The resolved configuration as YAML, without the three values below.
+    settings : mapping
+        The resolved configuration, flat, without `HOW`.
     output : str
         Folder of the run folders.
     force : bool
         Run again what is there already.
     threads : int
-        Threads that plan the trials; they change no result.
+        Threads that do the trials; they change no result.
     """
 
     experiment: str
-    method: str
+    method: Method
     problem: Problem
     task: Task
-    recorders: list[Recorder] = field(repr=False)
+    recorders: Sequence[Recorder] = field(repr=False)
     seed: int
     trials: int
-    settings: str = field(repr=False)
+    settings: Settings = field(repr=False)
     output: str
     force: bool
     threads: int = 1
@@ -148,15 +105,15 @@ def conf_folder() -> str:
     return str(files("gapath.conf"))
 
 
-def make_run(config: DictConfig, method: str) -> Run:
+def make_run(config: DictConfig, choices: Mapping[str, str | None]) -> Run:
     """Check a composed configuration and make everything that a run needs.
 
     Parameters
     ----------
     config : DictConfig
         As composed from ``conf``.
-    method : str
-        Name of the planner's or navigator's YAML, with the values that were overridden.
+    choices : mapping
+        Configuration group -> name of the chosen YAML.
 
     Returns
     -------
@@ -168,111 +125,75 @@ def make_run(config: DictConfig, method: str) -> Run:
     InputError
         For anything that is wrong in it, or in the map that it names.
     """
-    loose = OmegaConf.to_container(config, resolve=True)
-    settings: Settings = typed(Settings, loose, "")
-    require(1 <= settings.trials <= 10**6, "trials", settings.trials, "an integer from 1 to 10^6")
-    require(1 <= settings.threads <= 256, "threads", settings.threads, "an integer from 1 to 256")
-    require(0 <= settings.seed < 2**64, "seed", settings.seed, "an integer in [0, 2^64)")
-    require(settings.output.strip() != "", "output", repr(settings.output), "a folder")
+    loose: Any = OmegaConf.to_container(config, resolve=True)
+    root, chosen = split(loose)
+    task = find_task(root.task)
+    require(1 <= root.trials <= 10**6, "trials", root.trials, "an integer from 1 to 10^6")
+    require(1 <= root.threads <= 256, "threads", root.threads, "an integer from 1 to 256")
+    require(0 <= root.seed < 2**64, "seed", root.seed, "an integer in [0, 2^64)")
+    require(root.output.strip() != "", "output", repr(root.output), "a folder")
     require(
-        settings.name.replace("_", "").replace("-", "").isalnum(),
+        root.name.replace("_", "").replace("-", "").isalnum(),
         "name",
-        repr(settings.name),
+        repr(root.name),
         "letters, digits, - and _",
     )
-    used = {"plan": ("planner",), "drive": ("navigator", "drive")}
-    require(settings.task in used, "task", settings.task, f"one of {', '.join(used)}")
-    # A drive's steps are Python, so drives on threads would only wait for one another.
-    alone = settings.task != "drive" or settings.threads == 1
-    require(alone, "threads", settings.threads, "1 with task=drive; more speed up task=plan only")
-    kept = {
-        key: value
-        for key, value in dataclasses.asdict(settings).items()
-        if key not in ("output", "force", "threads", "planner", "navigator", "drive")
-        or key in used[settings.task]
-    }
+    useful = task.threaded or root.threads == 1
+    require(useful, "threads", root.threads, f"1 with task={task.name}, which they do not speed up")
+    common = {key: value for key, value in asdict(root).items() if key not in HOW}
+    settings = common | {group: chosen[group] for group in task.groups}
     recorders: list[Recorder] = [
-        build("recorder", values, f"recorder.{name}") for name, values in settings.recorder.items()
+        build("recorder", values, f"recorder.{name}") for name, values in root.recorder.items()
     ]
-    problem, task = read_problem(settings), make_task(kept)
-    task.check(problem)
+    problem, made = read_problem(root), task.make(settings)
+    made.check(problem)
     for recorder in recorders:
-        recorder.check(settings.trials)
+        recorder.check(root.trials)
     return Run(
-        settings.name,
-        method,
+        root.name,
+        method_of(task, loose, choices),
         problem,
-        task,
-        # where nobody records, trials need not be told as events
-        [recorder for recorder in recorders if not isinstance(recorder, none.Recorder)],
-        settings.seed,
-        settings.trials,
-        OmegaConf.to_yaml(OmegaConf.create(kept)),
-        settings.output,
-        settings.force,
-        settings.threads,
+        made,
+        [recorder for recorder in recorders if recorder.records],
+        root.seed,
+        root.trials,
+        flatten(settings),
+        root.output,
+        root.force,
+        root.threads,
     )
 
 
-def make_task(settings: dict[str, Any]) -> Task:
-    """Make the task that settings describe.
+def split(loose: Mapping[str, Any]) -> tuple[Root, dict[str, Any]]:
+    """Split a composed configuration into its root and the groups that some task uses.
 
     Parameters
     ----------
-    settings : dict
-        With ``task``, and ``planner`` or ``navigator`` and ``drive``.
+    loose : mapping
+        The configuration, resolved.
 
     Returns
     -------
-    Task
-        To plan or to drive.
+    root : Root
+        Typed.
+    chosen : dict
+        Group -> its settings.
 
     Raises
     ------
     InputError
-        If a setting is unknown, missing, mistyped or out of range.
+        If a setting of the root is unknown, missing or mistyped, or a group of the task is missing.
     """
-    if settings["task"] == "plan":
-        return PlanTask(build("planner", settings["planner"], "planner"))
-    drive: DriveSettings = typed(DriveSettings, settings["drive"], "drive")
-    before = None if drive.known_map is None else read_known_map(drive.known_map)
-    return DriveTask(
-        build("navigator", settings["navigator"], "navigator"),
-        typed(Sensor, drive.sensor, "drive.sensor"),
-        typed(Changes, drive.changes, "drive.changes"),
-        drive.step_limit,
-        drive.unknown_weight,
-        before,
-    )
+    groups = {group for name in kinds("task") for group in find_task(name).groups}
+    root: Root = typed(Root, {k: v for k, v in loose.items() if k not in groups}, "")
+    chosen = {group: loose.get(group) for group in groups}
+    for group in find_task(root.task).groups:
+        given = chosen[group]
+        require(isinstance(given, dict), group, given, f"settings, which task={root.task} uses")
+    return root, chosen
 
 
-def read_known_map(path: str) -> GridMap:
-    """Read what a robot knows before it starts: what that map calls unknown stays unknown.
-
-    Parameters
-    ----------
-    path : str
-        A map file.
-
-    Returns
-    -------
-    GridMap
-        Its obstacles are known, everything else is not.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be used.
-    """
-    kind = file.kind_of(path, "drive.known_map")
-    values = yaml_values("map", kind) | {"path": path}
-    if "unknown" in values:
-        values["unknown"] = "free"
-    grid: GridMap = build("map", values, "drive.known_map").read()
-    return grid
-
-
-def read_problem(settings: Settings) -> Problem:
+def read_problem(settings: Root) -> Problem:
     """Read the map and pose the problem that its start and target define."""
     rules = [rule.name.lower() for rule in CornerCutting]
     require(
@@ -292,26 +213,26 @@ def read_problem(settings: Settings) -> Problem:
     return Problem(grid, grid.start, grid.target, rule)
 
 
-def task_from_settings(settings: str) -> Task:
-    """Make the task that a log's settings describe.
+def task_of(settings: Settings) -> Task:
+    """Make the task that a run's settings describe.
 
     Parameters
     ----------
-    settings : str
-        `Run.settings`.
+    settings : mapping
+        `Run.settings`, as a log has them.
 
     Returns
     -------
     Task
-        To plan or to drive.
+        The task.
 
     Raises
     ------
     InputError
         If the settings are not those of this version.
     """
-    loose = OmegaConf.to_container(OmegaConf.create(settings))
-    known = isinstance(loose, dict) and loose.get("task") in ("plan", "drive")
-    require(known, "settings of the log", "no known task", "the settings of a run")
-    assert isinstance(loose, dict)
-    return make_task({str(key): value for key, value in loose.items()})
+    task = find_task(settings.get("task"), "settings of the log, task")
+    given = nested(settings)
+    for group in task.groups:
+        require(isinstance(given.get(group), dict), "settings of the log", f"no {group}", "a run's")
+    return task.make(given)

@@ -6,26 +6,32 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import yaml
+
 from gapath.events import Event, RunFinished, RunStarted
 from gapath.problem import Plan
-from gapath.runs.config import Run, task_from_settings
+from gapath.runs.config import Run, task_of
 from gapath.store.durable import write_whole
-from gapath.store.rows import parquet
-from gapath.store.runfolder import (
+from gapath.store.keys import run_key, setting_hash, versions
+from gapath.store.records import (
     MANIFEST,
-    Busy,
-    RunFolder,
+    SETTINGS,
+    STATUS,
+    TRIALS,
+    FileEntry,
+    Manifest,
+    Status,
+    is_whole,
     now,
-    run_key,
-    setting_hash,
-    sha256,
-    versions,
 )
-from gapath.task import Batch
+from gapath.store.rows import parquet
+from gapath.store.runfolder import Busy, RunFolder
+from gapath.store.settings import nested
+from gapath.task import Batch, columns
 
 
 @dataclass(frozen=True)
-class Outcome:
+class Execution:
     """How the execution of a run ended.
 
     Parameters
@@ -50,7 +56,7 @@ def run_started(run: Run, optimum: Plan) -> RunStarted:
     """Make a run's first event."""
     return RunStarted(
         run.experiment,
-        run.method,
+        run.method.name,
         run.task.name,
         run.problem,
         run.seed,
@@ -75,10 +81,8 @@ def replay_events(started: RunStarted) -> Iterator[Event]:
     Event
         What the run would emit now, from the second event on.
     """
-    task = task_from_settings(started.settings)
-    batch = Batch(
-        started.experiment, started.planner, started.problem, started.seed, started.trials
-    )
+    task = task_of(started.settings)
+    batch = Batch(started.experiment, started.method, started.problem, started.seed, started.trials)
     step = found = 0
     for trial in task.trials(batch, task.optimum(started.problem)):
         yield from trial.events(step)
@@ -87,7 +91,7 @@ def replay_events(started: RunStarted) -> Iterator[Event]:
     yield RunFinished(step, started.trials, found)
 
 
-def execute(run: Run, command: str, progress: bool = True) -> Outcome:
+def execute(run: Run, command: str, progress: bool = True) -> Execution:
     """Do a run and write its folder.
 
     Parameters
@@ -101,7 +105,7 @@ def execute(run: Run, command: str, progress: bool = True) -> Outcome:
 
     Returns
     -------
-    Outcome
+    Execution
         The state is "skipped" if the folder is whole already and not ``run.force``.
 
     Raises
@@ -109,36 +113,39 @@ def execute(run: Run, command: str, progress: bool = True) -> Outcome:
     InputError
         If the folder cannot be written.
     """
-    key = run_key(run.settings, run.method, run.problem)
+    key = run_key(run.settings, run.method.name, run.problem)
     folder = RunFolder(Path(run.output) / run.experiment / key)
     folder.create()
     try:
         with folder.lock():
-            if folder.is_whole() and not run.force:
-                return Outcome(folder.path, "skipped", [], [])
+            if is_whole(folder) and not run.force:
+                return Execution(folder.path, "skipped", [], [])
             return _execute_held(run, folder, key, command, progress)
     except Busy:
-        return Outcome(folder.path, "busy", [], [])
+        return Execution(folder.path, "busy", [], [])
 
 
-def _execute_held(run: Run, folder: RunFolder, key: str, command: str, progress: bool) -> Outcome:
+def _execute_held(run: Run, folder: RunFolder, key: str, command: str, progress: bool) -> Execution:
     started = now()
-    folder.write_status("running", started)
+    Status("running", started).write(folder)
     try:
-        write_whole(folder.path / "config.yaml", run.settings.encode())
+        config = yaml.safe_dump(nested(run.settings), sort_keys=False, allow_unicode=True)
+        write_whole(folder.path / SETTINGS, config.encode())
         optimum = run.task.optimum(run.problem)
         rows, recorded = _do_trials(run, optimum, folder, progress)
-        write_whole(folder.path / "trials.parquet", parquet(run.task.row, rows))
-        names = ["config.yaml", "trials.parquet", *recorded]
-        folder.keep_only(names)
-        folder.write_json(MANIFEST, _manifest(run, folder, key, command, names))
+        table = parquet(columns(run.task.row), [row.values() for row in rows])
+        write_whole(folder.path / TRIALS, table)
+        names = [SETTINGS, TRIALS, *recorded]
+        folder.keep_only([*names, STATUS, MANIFEST])
+        _manifest(run, folder, key, command, names).write(folder)
         state = "done" if optimum.feasible else "infeasible"
-        folder.write_status(state, started)
-        return Outcome(folder.path, state, rows, [*names, MANIFEST, "status.json"])
+        Status(state, started, now()).write(folder)
+        return Execution(folder.path, state, rows, [*names, MANIFEST, STATUS])
     except BaseException as error:
         interrupted = isinstance(error, KeyboardInterrupt)
         state = "interrupted" if interrupted else "failed"
-        folder.write_status(state, started, "" if interrupted else traceback.format_exc())
+        message = "" if interrupted else traceback.format_exc()
+        Status(state, started, now(), message).write(folder)
         raise
 
 
@@ -154,10 +161,10 @@ def _do_trials(
         for recorder in run.recorders:
             recorder.record(event)
 
-    batch = Batch(run.experiment, run.method, run.problem, run.seed, run.trials, run.threads)
+    batch = Batch(run.experiment, run.method.name, run.problem, run.seed, run.trials, run.threads)
     bar = tqdm(
         run.task.trials(batch, optimum),
-        desc=f"{run.problem.map.name} {run.method}",
+        desc=f"{run.problem.map.name} {run.method.name}",
         total=run.trials,
         unit="trial",
         leave=False,
@@ -182,27 +189,24 @@ def _do_trials(
         raise
 
 
-def _manifest(
-    run: Run, folder: RunFolder, key: str, command: str, names: list[str]
-) -> dict[str, object]:
-    listed = {
-        name: {
-            "sha256": sha256(folder.path / name),
-            "bytes": (folder.path / name).stat().st_size,
-        }
-        for name in names
-    }
-    return {
-        "key": key,
-        "setting": setting_hash(run.settings, run.method, run.problem),
-        "experiment": run.experiment,
-        "map": run.problem.map.name,
-        "map_instance": run.problem.map.instance,
-        "task": run.task.name,
-        "planner": run.method,
-        "seed": run.seed,
-        "trials": run.trials,
-        "command": command,
-        "versions": versions(),
-        "files": listed,
-    }
+def _manifest(run: Run, folder: RunFolder, key: str, command: str, names: list[str]) -> Manifest:
+    return Manifest(
+        key=key,
+        setting=setting_hash(run.settings, run.method.name, run.problem),
+        experiment=run.experiment,
+        task=run.task.name,
+        map=run.problem.map.name,
+        map_instance=run.problem.map.instance,
+        map_digest=run.problem.map.digest,
+        method=run.method.name,
+        preset=run.method.preset,
+        changes=dict(run.method.changes),
+        seed=run.seed,
+        trials=run.trials,
+        command=command,
+        versions=versions(),
+        files={
+            name: FileEntry(folder.sha256(name), (folder.path / name).stat().st_size)
+            for name in names
+        },
+    )

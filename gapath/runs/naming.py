@@ -3,22 +3,43 @@
 from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 import yaml
 
-from gapath.components import yaml_names, yaml_values
+from gapath.discovery import yaml_names, yaml_values
+from gapath.store.settings import Value, flatten
+from gapath.task import Task
 
 _SHOWN_APART = ("path", "start", "target", "scenario", "problem", "map_class", "drawing", "number",
                 "instance")  # fmt: skip
 """Settings of maps that are their name, or what tables have columns for."""
 
 
-def method_name(config: Mapping[str, Any], choices: Mapping[str, str]) -> str:
-    """Name what a run tries: its planner's or navigator's YAML, and what differs from it.
+class Method(NamedTuple):
+    """What a run tries: a YAML of a planner or navigator, and what differs from it."""
+
+    preset: str
+    """Name of the YAML."""
+    changes: Mapping[str, Value] = MappingProxyType({})
+    """Settings that differ: flat name -> value; "none" for what a shorter list lacks."""
+
+    @property
+    def name(self) -> str:
+        """The name in tables: "ga3[population=60]", "kg18[sensor.range=8]"."""
+        return _with_changes(self.preset, self.changes)
+
+
+def method_of(
+    task: type[Task], config: Mapping[str, Any], choices: Mapping[str, str | None]
+) -> Method:
+    """Tell what a run tries.
 
     Parameters
     ----------
+    task : type
+        Its task.
     config : mapping
         As composed from ``conf``.
     choices : mapping
@@ -26,22 +47,24 @@ def method_name(config: Mapping[str, Any], choices: Mapping[str, str]) -> str:
 
     Returns
     -------
-    str
-        For example "ga3", "ga3[population=60]" or "kg18[corner_cutting=forbid,sensor.range=8]".
+    Method
+        The YAML of the task's first group, and what differs from it and from the usual values of
+        the other groups.
     """
-    group = "navigator" if config.get("task") == "drive" else "planner"
     plain = yaml.safe_load((files("gapath.conf") / "config.yaml").read_text("utf-8"))
-    given = _leaves(config.get(group)) | {"corner_cutting": config.get("corner_cutting")}
-    usual = {"corner_cutting": plain["corner_cutting"]}
-    if choices[group] in yaml_names(group):
-        usual |= _leaves(yaml_values(group, choices[group]))
-    else:  # a YAML of the user's own
-        usual |= _leaves(config.get(group))
-    if group == "navigator":
-        given |= _leaves(config.get("drive"))
-        given["known_map"] = given["known_map"] and _title(str(given["known_map"]))
-        usual |= _leaves(plain["drive"])
-    return _with_changes(choices[group], given, usual)
+    given: dict[str, Value] = {"corner_cutting": config.get("corner_cutting")}
+    usual: dict[str, Value] = {"corner_cutting": plain["corner_cutting"]}
+    for group in task.groups:
+        values, name = config.get(group), choices.get(group)
+        if name in yaml_names(group):
+            known: Any = yaml_values(group, str(name))
+        else:
+            known = plain.get(group, values)  # else a YAML of the user's own
+        given |= flatten(values)
+        usual |= flatten(known)
+    if given.get("known_map"):
+        given["known_map"] = _title(str(given["known_map"]))
+    return Method(str(choices[task.groups[0]]), _changes(given, usual))
 
 
 def map_name(name: str, settings: Mapping[str, Any]) -> str:
@@ -62,7 +85,7 @@ def map_name(name: str, settings: Mapping[str, Any]) -> str:
     path = str(settings.get("path") or "")
     title = _title(path) if Path(path).stem == name else name
     given = {key: value for key, value in settings.items() if key not in _SHOWN_APART}
-    return _with_changes(title, given, _usual(settings["kind"]))
+    return _with_changes(title, _changes(flatten(given), flatten(_usual(settings["kind"]))))
 
 
 def _usual(kind: str) -> dict[str, Any]:
@@ -79,19 +102,12 @@ def _title(path: str) -> str:
     return folder if file.stem == "map" and folder not in ("", "..") else file.stem
 
 
-def _with_changes(name: str, given: Mapping[str, object], usual: Mapping[str, object]) -> str:
-    changed = [f"{key}={value}" for key, value in given.items() if usual.get(key) != value]
+def _changes(given: Mapping[str, Value], usual: Mapping[str, Value]) -> dict[str, Value]:
+    changed = {key: value for key, value in given.items() if usual.get(key) != value}
     gone = [key for key in usual if key not in given and "[" in key]  # of a list that is shorter
-    changed += [f"{key}=none" for key in gone]
-    return f"{name}[{','.join(sorted(changed))}]" if changed else name
+    return changed | dict.fromkeys(gone, "none")
 
 
-def _leaves(value: object, name: str = "") -> dict[str, object]:
-    """Flatten nested settings: dotted name -> value."""
-    if isinstance(value, dict):
-        items = [(f"{name}.{key}".lstrip("."), item) for key, item in value.items()]
-    elif isinstance(value, list):
-        items = [(f"{name}[{i}]", item) for i, item in enumerate(value)]
-    else:
-        return {name: value}
-    return {leaf: item for key, part in items for leaf, item in _leaves(part, key).items()}
+def _with_changes(name: str, changes: Mapping[str, Value]) -> str:
+    shown = sorted(f"{key}={value}" for key, value in changes.items())
+    return f"{name}[{','.join(shown)}]" if shown else name

@@ -36,12 +36,11 @@ def publish(source: Path, target: Path) -> None:
         Its name from now on; a file of that name is replaced.
     """
     source.replace(target)
-    if os.name == "posix":  # only there can a folder be opened, and needs to be
-        folder = os.open(target.parent, os.O_RDONLY)
-        try:
-            os.fsync(folder)
-        finally:
-            os.close(folder)
+    folder = os.open(target.parent, os.O_RDONLY)
+    try:
+        os.fsync(folder)
+    finally:
+        os.close(folder)
 
 
 def write_whole(path: Path, data: bytes) -> None:

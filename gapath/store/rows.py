@@ -1,13 +1,13 @@
 """Rows of trials as Parquet."""
 
 import io
-from dataclasses import fields
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 
-def parquet(kind: type[Any], rows: list[Any]) -> bytes:
+def parquet(columns: Mapping[str, type], rows: Sequence[Mapping[str, Any]]) -> bytes:
     """Write rows as a Parquet file.
 
     Columns are made from buffers: from Python's objects pyarrow would make them with pandas,
@@ -15,10 +15,10 @@ def parquet(kind: type[Any], rows: list[Any]) -> bytes:
 
     Parameters
     ----------
-    kind : type
-        The dataclass of the rows; its fields are str, int, float or bool.
-    rows : list of dataclass
-        One row a trial.
+    columns : mapping of str to type
+        Their names in order, and str, int, float or bool for each.
+    rows : sequence of mapping
+        One row a trial: column -> value.
 
     Returns
     -------
@@ -29,24 +29,24 @@ def parquet(kind: type[Any], rows: list[Any]) -> bytes:
     from pyarrow import parquet
 
     arrays = []
-    for field in fields(kind):
-        values = [getattr(row, field.name) for row in rows]
-        if field.type is str:
+    for name, kind in columns.items():
+        values = [row[name] for row in rows]
+        if kind is str:
             texts = [value.encode() for value in values]
             ends = np.cumsum([0, *map(len, texts)]).astype(np.int32)
             joined = pa.py_buffer(b"".join(texts))
             arrays.append(pa.StringArray.from_buffers(len(rows), pa.py_buffer(ends), joined))
-        elif field.type is bool:
+        elif kind is bool:
             bits = np.packbits(np.array(values, dtype=np.bool_), bitorder="little")
             arrays.append(pa.Array.from_buffers(pa.bool_(), len(rows), [None, pa.py_buffer(bits)]))
         else:
             arrow, numpy = (
-                (pa.float64(), np.float64) if field.type is float
-                else (pa.uint64(), np.uint64) if field.name == "seed"
+                (pa.float64(), np.float64) if kind is float
+                else (pa.uint64(), np.uint64) if name == "seed"
                 else (pa.int64(), np.int64)
             )  # fmt: skip
             numbers = pa.py_buffer(np.array(values, dtype=numpy))
             arrays.append(pa.Array.from_buffers(arrow, len(rows), [None, numbers]))
     file = io.BytesIO()
-    parquet.write_table(pa.Table.from_arrays(arrays, [f.name for f in fields(kind)]), file)
+    parquet.write_table(pa.Table.from_arrays(arrays, list(columns)), file)
     return file.getvalue()

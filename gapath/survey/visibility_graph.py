@@ -93,7 +93,7 @@ class VisibilityGraph(NamedTuple):
             plan,
             status=PlanStatus.FOUND,
             path=path,
-            cost=cost,
+            weights=cost,
             lines=None if straight is None else lambda: straight,
         )
 

@@ -1,21 +1,32 @@
-"""The task "drive": trials are drives through an unknown map."""
+"""The task to drive: trials are drives through an unknown map."""
 
 import statistics
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
+from typing import Any, Self
 
 import numpy as np
 
+from gapath.components import build, typed
+from gapath.discovery import reader_of, yaml_values
 from gapath.driving.drive import Drive, Sensor, drive
 from gapath.driving.navigation import Navigator
 from gapath.driving.row import DriveRow, drive_row
 from gapath.driving.told import drive_events
 from gapath.driving.world import Changes
 from gapath.errors import require
-from gapath.events import Outcome
+from gapath.events import (
+    Called,
+    DriveFinished,
+    Outcome,
+    PathsChanged,
+    RunStarted,
+    Stepped,
+    TrialStarted,
+)
 from gapath.grid import GridMap
-from gapath.planning.metrics import clearances, path_metrics
+from gapath.planning.path import path_weights
 from gapath.planning.shortest_path import shortest_path
 from gapath.problem import Plan, Problem
 from gapath.task import Batch, Trial
@@ -25,8 +36,47 @@ WARM_UP = 100
 before the clock runs."""
 
 
+@dataclass
+class DriveSettings:
+    """What a drive needs besides a map and a navigator.
+
+    Parameters
+    ----------
+    sensor : dict
+        `gapath.driving.drive.Sensor`.
+    changes : dict
+        `gapath.driving.world.Changes`.
+    step_limit : int
+        Steps after which a drive has overrun.
+    unknown_weight : float
+        What an unknown field counts.
+    known_map : str or None
+        A map file: what the robot knows before it starts.
+    """
+
+    sensor: dict[str, Any]
+    changes: dict[str, Any]
+    step_limit: int
+    unknown_weight: float
+    known_map: str | None
+
+    def __post_init__(self) -> None:
+        require(
+            1 <= self.step_limit <= 10**6,
+            "drive.step_limit",
+            self.step_limit,
+            "an integer from 1 to 1000000",
+        )
+        require(
+            0 <= self.unknown_weight < 1,
+            "drive.unknown_weight",
+            self.unknown_weight,
+            "a number in [0, 1)",
+        )
+
+
 @dataclass(frozen=True)
-class DriveTask:
+class Task:
     """Drive through a map that the robot does not know.
 
     Parameters
@@ -53,7 +103,30 @@ class DriveTask:
     before: GridMap | None
 
     name = "drive"
+    groups = ("navigator", "drive")
     row = DriveRow
+    success = "reached"
+    threaded = False  # a drive's steps are Python: drives on threads would wait for one another
+    events = (TrialStarted, Called, PathsChanged, Stepped, DriveFinished)
+
+    @classmethod
+    def make(cls, settings: Mapping[str, Any]) -> Self:
+        """Make it from nested settings; raises InputError."""
+        drive: DriveSettings = typed(DriveSettings, settings["drive"], "drive")
+        return cls(
+            build("navigator", settings["navigator"], "navigator"),
+            typed(Sensor, drive.sensor, "drive.sensor"),
+            typed(Changes, drive.changes, "drive.changes"),
+            drive.step_limit,
+            drive.unknown_weight,
+            None if drive.known_map is None else read_known_map(drive.known_map),
+        )
+
+    @staticmethod
+    def told_optimum(run: RunStarted) -> dict[str, str]:
+        """Say what the trials are held against: label -> value."""
+        steps = len(run.optimal_path) - 1
+        return {"shortest": f"{steps} steps possible" if steps >= 0 else "no way to the target"}
 
     def check(self, problem: Problem) -> None:
         """Raise InputError if what the robot knows before it starts is of another size."""
@@ -84,8 +157,7 @@ class DriveTask:
         plan = shortest_path(Problem(even, problem.start, problem.target, problem.corner_cutting))
         if not plan.feasible:
             return plan
-        cost = path_metrics(grid, plan.path, np.zeros(grid.weights.shape)).cost
-        return Plan(plan.status, plan.path, cost)
+        return Plan(plan.status, plan.path, path_weights(grid, plan.path))
 
     def trials(self, batch: Batch, optimum: Plan) -> Iterator[Trial]:
         """Drive with the random streams of trials 0 to trials - 1.
@@ -103,11 +175,10 @@ class DriveTask:
             In order.
         """
         problem, seed = batch.problem, batch.seed
-        distances = clearances(problem.map)
         self._drive(problem, seed, 0, min(WARM_UP, self.step_limit))
         for trial in range(batch.trials):
             driven = self._drive(problem, seed, trial, self.step_limit)
-            row = drive_row(batch, trial, driven, optimum, distances)
+            row = drive_row(batch, trial, driven, optimum)
             events = partial(drive_events, driven, problem.map.cols, seed, trial)
             yield Trial(row, row.reached, len(driven.frames), events)
 
@@ -158,3 +229,29 @@ class DriveTask:
 
 def _median_time(rows: list[DriveRow]) -> str:
     return f"{1000 * statistics.median(row.compute_time_s for row in rows):.3g} ms"
+
+
+def read_known_map(path: str) -> GridMap:
+    """Read what a robot knows before it starts: what that map calls unknown stays unknown.
+
+    Parameters
+    ----------
+    path : str
+        A map file.
+
+    Returns
+    -------
+    GridMap
+        Its obstacles are known, everything else is not.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be used.
+    """
+    kind = reader_of(path, "drive.known_map")
+    values = yaml_values("map", kind) | {"path": path}
+    if "unknown" in values:
+        values["unknown"] = "free"
+    grid: GridMap = build("map", values, "drive.known_map").read()
+    return grid

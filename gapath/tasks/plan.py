@@ -1,64 +1,46 @@
-"""The task "plan": trials are planning queries on a known map."""
+"""The task to plan: trials are planning queries on a known map."""
 
 import json
 import math
 import statistics
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
+from typing import Any, Self
 
-import numpy as np
-from numpy.typing import NDArray
-
-from gapath.events import Event, Evolved, Surveyed, TrialFinished, TrialStarted
-from gapath.planning.metrics import clearances, line_length, path_metrics
+from gapath.components import build
+from gapath.events import Event, Evolved, RunStarted, Surveyed, TrialFinished, TrialStarted
 from gapath.planning.shortest_path import shortest_path
 from gapath.planning.simulation import TimedPlan, plan_trials
 from gapath.problem import Particular, Plan, Planner, Problem
-from gapath.task import Batch, Trial
+from gapath.task import Batch, Row, Trial, head
 
 
 @dataclass(frozen=True)
-class PlanRow:
+class PlanRow(Row):
     """A row of ``trials.parquet``: a planning query; failures are rows too.
 
-    `cost` of a failure is the planner's best fitness, obstacles counted as VLN; `length`
-    and what follows describe a path and are NaN (turns: 0) where there is none. `line_length`
-    is the Euclidean length of the straight lines that a path is made of, NaN for one that is not;
-    `stage_times_s` gives the wall time of each stage of a planner that has stages, as JSON.
+    `cost` of a failure is the planner's best fitness, obstacles counted as VLN, `obstacles` how
+    many there are on its best path; `stage_times_s` gives the wall time of each stage of a planner
+    that has stages, as JSON.
     """
 
-    experiment: str
-    map: str
-    map_instance: int
-    map_source: str
-    width: int
-    height: int
-    start: str
-    target: str
-    corner_cutting: str
     planner: str
-    seed: int
-    trial: int
     status: str
     feasible: bool
     cost: float
+    obstacles: int
     optimal_cost: float
     optimality_ratio: float
-    length: float
-    turns: int
-    clearance: float
-    curvature: float
     epochs: int
     evaluations: int
     expansions: int
     plan_time_s: float
-    line_length: float
     stage_times_s: str
 
 
 @dataclass(frozen=True)
-class PlanTask:
+class Task:
     """Plan on a map that is known.
 
     Parameters
@@ -70,7 +52,21 @@ class PlanTask:
     planner: Planner
 
     name = "plan"
+    groups = ("planner",)
     row = PlanRow
+    success = "feasible"
+    threaded = True
+    events = (TrialStarted, Surveyed, Evolved, TrialFinished)
+
+    @classmethod
+    def make(cls, settings: Mapping[str, Any]) -> Self:
+        """Make it from nested settings; raises InputError."""
+        return cls(build("planner", settings["planner"], "planner"))
+
+    @staticmethod
+    def told_optimum(run: RunStarted) -> dict[str, str]:
+        """Say what the trials are held against: label -> value."""
+        return {"optimal cost": f"{run.optimal_cost:g}"}
 
     def check(self, problem: Problem) -> None:
         """Raise InputError if the planner does not take such a map."""
@@ -107,12 +103,11 @@ class PlanTask:
         Trial
             In order.
         """
-        distances = clearances(batch.problem.map)
         answers = plan_trials(
             batch.problem, optimum, self.planner, batch.seed, batch.trials, batch.threads
         )
         for answer in answers:
-            row = _row(batch, answer, optimum, distances)
+            row = _row(batch, answer, optimum)
             events = partial(trial_events, answer, batch.seed)
             yield Trial(row, row.feasible, duration(answer.plan), events)
 
@@ -157,8 +152,8 @@ def _effort(row: PlanRow) -> dict[str, object]:
     if not math.isinf(row.cost):  # a search that counts no obstacles has no cost without a path
         lines["cost" if row.feasible else "best cost"] = f"{row.cost:g}"
     lines["optimal cost"] = f"{row.optimal_cost:g}"
-    if not math.isnan(row.line_length):
-        lines["length"] = f"{row.line_length:.1f} fields in straight lines"
+    if not math.isnan(row.metrics["line_length"]):
+        lines["length"] = f"{row.metrics['line_length']:.1f} fields in straight lines"
     if row.epochs:
         lines |= {"epochs": row.epochs, "evaluations": row.evaluations}
     if row.expansions:
@@ -203,16 +198,7 @@ def trial_events(answer: TimedPlan, seed: int, step: int) -> Iterator[Event]:
         yield Surveyed(step, answer.number, plan.survey())
     if plan.evolution is not None:
         yield Evolved(step, answer.number, 0, plan.evolution)
-    yield TrialFinished(
-        step + duration(plan) - 1,
-        answer.number,
-        plan.status,
-        plan.cost,
-        plan.epochs,
-        plan.evaluations,
-        plan.expansions,
-        plan.path,
-    )
+    yield TrialFinished(step + duration(plan) - 1, answer.number, plan.answer)
 
 
 def duration(plan: Plan) -> int:
@@ -220,36 +206,21 @@ def duration(plan: Plan) -> int:
     return max(plan.epochs, 1)
 
 
-def _row(batch: Batch, answer: TimedPlan, optimum: Plan, distances: NDArray[np.float64]) -> PlanRow:
-    grid, plan = batch.problem.map, answer.plan
-    metrics = path_metrics(grid, plan.path, distances)
+def _row(batch: Batch, answer: TimedPlan, optimum: Plan) -> PlanRow:
+    plan = answer.plan
     ratio = plan.cost / optimum.cost if plan.feasible and optimum.cost else math.nan
     return PlanRow(
-        experiment=batch.experiment,
-        map=grid.name,
-        map_instance=grid.instance,
-        map_source=grid.source,
-        width=grid.cols,
-        height=grid.rows,
-        start=str(batch.problem.start),
-        target=str(batch.problem.target),
-        corner_cutting=batch.problem.corner_cutting.name.lower(),
+        **head(batch, answer.number, plan),
         planner=batch.method,
-        seed=batch.seed,
-        trial=answer.number,
         status=plan.status.name.lower(),
         feasible=plan.feasible,
         cost=plan.cost,
+        obstacles=plan.obstacles,
         optimal_cost=optimum.cost,
         optimality_ratio=ratio,
-        length=metrics.length,
-        turns=metrics.turns,
-        clearance=metrics.clearance,
-        curvature=metrics.curvature,
         epochs=plan.epochs,
         evaluations=plan.evaluations,
         expansions=plan.expansions,
         plan_time_s=answer.plan_time_s,
-        line_length=line_length(plan.lines()) if plan.lines else math.nan,
         stage_times_s=json.dumps(dict(plan.stages)),
     )

@@ -8,7 +8,8 @@ from drive_strategies import worlds
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gapath.components import build, kinds, yaml_values
+from gapath.components import build
+from gapath.discovery import kinds, yaml_values
 from gapath.driving.drive import Sensor, drive
 from gapath.driving.navigation import Navigator
 from gapath.driving.world import Changes, World

@@ -8,7 +8,8 @@ from drive_strategies import queries
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gapath.components import build, yaml_values
+from gapath.components import build
+from gapath.discovery import yaml_values
 from gapath.driving.drive import Sensor, drive
 from gapath.driving.world import Changes
 from gapath.errors import InputError

@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 import yaml
 
-from gapath.components import yaml_values
+from gapath.discovery import yaml_values
 from gapath.events import (
     Called,
     DriveFinished,

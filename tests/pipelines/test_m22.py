@@ -5,7 +5,8 @@ import pandas as pd
 import pytest
 
 from gapath.api import load_map
-from gapath.components import build, yaml_names, yaml_values
+from gapath.components import build
+from gapath.discovery import yaml_names, yaml_values
 from gapath.errors import InputError
 from gapath.mapio import scene
 from gapath.pipelines.m22 import figure_concave as figure_m22_concave

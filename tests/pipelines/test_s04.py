@@ -4,7 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from gapath.components import build, yaml_values
+from gapath.components import build
+from gapath.discovery import yaml_values
 from gapath.errors import InputError
 from gapath.pipelines.numbers.statistics import wilson
 from gapath.pipelines.papers.s04 import MAPS, RUNS, SUCCESSES, paper_successes

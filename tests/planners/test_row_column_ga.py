@@ -12,7 +12,7 @@ from row_column_strategies import GENOTYPES, planner, planners
 from strategies import problems
 
 import gapath
-from gapath.components import yaml_values
+from gapath.discovery import yaml_values
 from gapath.errors import InputError
 from gapath.grid import GridMap
 from gapath.kernels import rng

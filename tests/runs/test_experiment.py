@@ -11,7 +11,8 @@ import pyarrow.parquet as pq
 import pytest
 
 from gapath.commands import log as log_cli
-from gapath.components import build, yaml_values
+from gapath.components import build
+from gapath.discovery import yaml_values
 from gapath.mapio.reconstructed import Reader, generate
 from gapath.planning.shortest_path import shortest_path
 from gapath.problem import Problem

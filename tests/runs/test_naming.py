@@ -2,7 +2,8 @@
 
 import pytest
 
-from gapath.components import build, yaml_values
+from gapath.components import build
+from gapath.discovery import yaml_values
 from gapath.runs.naming import map_name, method_name
 
 

@@ -10,7 +10,8 @@ from strategies import RULES
 from visibility_strategies import CLEARANCE, GRAPH, map_of, picture_problems
 
 import gapath
-from gapath.components import build, yaml_values
+from gapath.components import build
+from gapath.discovery import yaml_values
 from gapath.errors import InputError
 from gapath.grid import GridMap
 from gapath.kernels.m22.graph import BLOCKED

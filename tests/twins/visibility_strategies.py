@@ -3,7 +3,8 @@
 import numpy as np
 from hypothesis import strategies as st
 
-from gapath.components import build, yaml_values
+from gapath.components import build
+from gapath.discovery import yaml_values
 from gapath.grid import GridMap
 from gapath.planners import inflated, visibility_ga, visibility_search
 from gapath.problem import CornerCutting, Problem

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from gapath.grid import Field, GridMap, Table
 from gapath.kernels.units import OBSTACLE, SCALE
+from gapath.problem import Answer, PlanStatus
 from gapath.recorders.mcap.format import FRAME, NS_PER_STEP, TOPICS, TYPES
 
 ENCAPSULATION = b"\0\1\0\0"
@@ -58,6 +59,33 @@ def strings_cdr(*texts: str) -> bytes:
         encoded = text.encode() + b"\0"
         data += bytes(-len(data) % 4) + _COUNT.pack(len(encoded)) + encoded
     return data
+
+
+def answer_numbers(answer: Answer) -> tuple[int, int, int, int, float, float, float]:
+    """Give the numbers of an answer in the order in which messages have them."""
+    return (
+        answer.epochs,
+        answer.evaluations,
+        answer.expansions,
+        answer.obstacles,
+        answer.weights,
+        answer.vln,
+        answer.cost,
+    )
+
+
+def read_answer(message: Any) -> Answer:
+    """Give the answer that a message holds."""
+    return Answer(
+        PlanStatus(message.status),
+        np.array(message.path, dtype=np.int32).reshape(-1, 2),
+        message.weights,
+        message.obstacles,
+        message.vln,
+        message.epochs,
+        message.evaluations,
+        message.expansions,
+    )
 
 
 def log_record(step: int, level: int, text: str) -> Record:

@@ -15,8 +15,9 @@ from gapath.errors import require
 from gapath.events import RunStarted
 from gapath.grid import Field, GridMap
 from gapath.problem import CornerCutting, Problem
+from gapath.store.settings import of_text, text_of
 
-LOG_VERSION = "2"
+LOG_VERSION = "3"
 """Raised whenever an older reader would misread a log."""
 
 NAME = "gapath"
@@ -45,7 +46,7 @@ def metadata(run: RunStarted) -> dict[str, str]:
     text = {
         "gapath_log_version": LOG_VERSION,
         "experiment": run.experiment,
-        "planner": run.planner,
+        "method": run.method,
         "task": run.task,
         "seed": str(run.seed),
         "trials": str(run.trials),
@@ -60,7 +61,7 @@ def metadata(run: RunStarted) -> dict[str, str]:
         "map_origin": _numbers(map(float, grid.origin)),
         "map_start": _numbers(grid.start or ()),
         "map_target": _numbers(grid.target or ()),
-        "settings": run.settings,
+        "settings": text_of(run.settings),
     } | {_VERSION_OF + name: version for name, version in run.versions.items()}
     return text | {"sha256": _digest(text, attachments(run))}
 
@@ -113,7 +114,7 @@ def run_started(text: Mapping[str, str], files: Mapping[str, bytes]) -> RunStart
     )
     return RunStarted(
         experiment=text["experiment"],
-        planner=text["planner"],
+        method=text["method"],
         task=text["task"],
         problem=Problem(
             grid,
@@ -123,7 +124,7 @@ def run_started(text: Mapping[str, str], files: Mapping[str, bytes]) -> RunStart
         ),
         seed=int(text["seed"]),
         trials=int(text["trials"]),
-        settings=text["settings"],
+        settings=of_text(text["settings"]),
         versions={
             name.removeprefix(_VERSION_OF): version
             for name, version in text.items()

@@ -19,12 +19,12 @@ from gapath.events import (
     RunStarted,
     Stepped,
 )
-from gapath.problem import PlanStatus
 from gapath.recorders.mcap.cdr import (
     ENCAPSULATION,
     INFO,
     WARN,
     Record,
+    answer_numbers,
     arrays_cdr,
     in_metres,
     log_record,
@@ -32,6 +32,7 @@ from gapath.recorders.mcap.cdr import (
     path_cdr,
     per_cent,
     pose_record,
+    read_answer,
     stamp_again,
     strings_cdr,
 )
@@ -41,7 +42,7 @@ _FIELDS_A_STEP = 1 << 14
 
 _INT32 = np.dtype("<i4")
 _STEP = struct.Struct("<QiiBB2x")  # padded for the count that follows
-_CALL = struct.Struct("<QQQQdIB?2x")
+_CALL = struct.Struct("<QQQQQdddIB?2x")
 _TRIAL = struct.Struct("<Q")
 _END = struct.Struct("<QQB")
 
@@ -110,17 +111,10 @@ class DriveMessages:
 
     def called(self, event: Called) -> Iterator[Record]:
         """Log a call of a planner."""
-        head = _CALL.pack(
-            event.trial,
-            event.epochs,
-            event.evaluations,
-            event.expansions,
-            event.cost,
-            event.index,
-            event.status,
-            event.adopted,
-        )
-        data = arrays_cdr(head, np.asarray(event.path, _INT32)) + strings_cdr(event.part)
+        answer = event.answer
+        numbers = answer_numbers(answer)
+        head = _CALL.pack(event.trial, *numbers, event.index, answer.status, event.adopted)
+        data = arrays_cdr(head, np.asarray(answer.path, _INT32)) + strings_cdr(event.part)
         yield Record("/planner_call", event.step, data)
 
     def paths_changed(self, event: PathsChanged) -> Iterator[Record]:
@@ -154,19 +148,7 @@ def _read_step(step: int, m: Any) -> Stepped:
 
 
 def _read_call(step: int, m: Any) -> Called:
-    return Called(
-        step,
-        m.trial,
-        m.part,
-        m.index,
-        m.adopted,
-        PlanStatus(m.status),
-        m.cost,
-        m.epochs,
-        m.evaluations,
-        m.expansions,
-        _pairs(m.path),
-    )
+    return Called(step, m.trial, m.part, m.index, m.adopted, read_answer(m))
 
 
 READERS: dict[str, Callable[[int, Any], Event]] = {

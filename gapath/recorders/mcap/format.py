@@ -26,8 +26,8 @@ _OWN = {
 # A trial begins. Its random streams are keyed by (seed, trial, call).
 uint64 trial
 uint64 seed
-string planner
-string settings           # the run's resolved configuration, YAML
+string method             # name of the planner or navigator
+string settings           # the run's settings, a line each: name: value
 """,
     "gapath_msgs/msg/GaRun": """\
 # A genetic algorithm ran: one row an epoch, rows one after another.
@@ -60,7 +60,10 @@ uint64 trial
 uint64 epochs
 uint64 evaluations        # chromosomes whose fitness was computed
 uint64 expansions         # fields that a graph search expanded
-float64 cost              # sum of the weights of the path's fields
+uint64 obstacles          # obstacle fields on the best path; 0 if it is feasible
+float64 weights           # sum of the weights of the best path's other fields
+float64 vln               # what an obstacle field counts in cost
+float64 cost              # for people: obstacles * vln + weights
 uint8 status
 bool feasible             # status is FOUND
 int32[] path              # x, y, x, y, ... [fields]; empty without a path
@@ -87,7 +90,10 @@ uint64 trial
 uint64 epochs
 uint64 evaluations        # chromosomes whose fitness was computed
 uint64 expansions         # fields that a graph search expanded
-float64 cost              # sum of the weights of the path's fields on the known map
+uint64 obstacles          # known obstacle fields on the best path; 0 if it is feasible
+float64 weights           # sum of the weights of its other fields on the known map
+float64 vln               # what an obstacle field counts in cost
+float64 cost              # for people: obstacles * vln + weights
 uint32 index              # number of the planner in its part's list
 uint8 status
 bool adopted              # its path became the current one
@@ -116,7 +122,7 @@ uint64 found              # trials that found a path, or reached the target
 """,
 }
 
-_OF_BOTH = {
+TOPICS = {
     "/map": "nav_msgs/msg/OccupancyGrid",
     "/start": "geometry_msgs/msg/PoseStamped",
     "/target": "geometry_msgs/msg/PoseStamped",
@@ -124,31 +130,20 @@ _OF_BOTH = {
     "/log": "rcl_interfaces/msg/Log",
     "/trial_start": "gapath_msgs/msg/TrialStart",
     "/run_end": "gapath_msgs/msg/RunEnd",
+    "/path": "nav_msgs/msg/Path",
+    "/ga_run": "gapath_msgs/msg/GaRun",
+    "/graph": "gapath_msgs/msg/Graph",
+    "/result": "gapath_msgs/msg/Result",
+    "/known_map": "nav_msgs/msg/OccupancyGrid",
+    "/pose": "geometry_msgs/msg/PoseStamped",
+    "/current_path": "nav_msgs/msg/Path",
+    "/past_path": "nav_msgs/msg/Path",
+    "/drive_step": "gapath_msgs/msg/DriveStep",
+    "/planner_call": "gapath_msgs/msg/PlannerCall",
+    "/paths": "gapath_msgs/msg/Paths",
+    "/drive_end": "gapath_msgs/msg/DriveEnd",
 }
-TOPICS_OF = {
-    "plan": _OF_BOTH
-    | {
-        "/path": "nav_msgs/msg/Path",
-        "/ga_run": "gapath_msgs/msg/GaRun",
-        "/graph": "gapath_msgs/msg/Graph",
-        "/result": "gapath_msgs/msg/Result",
-    },
-    "drive": _OF_BOTH
-    | {
-        "/known_map": "nav_msgs/msg/OccupancyGrid",
-        "/pose": "geometry_msgs/msg/PoseStamped",
-        "/current_path": "nav_msgs/msg/Path",
-        "/past_path": "nav_msgs/msg/Path",
-        "/drive_step": "gapath_msgs/msg/DriveStep",
-        "/planner_call": "gapath_msgs/msg/PlannerCall",
-        "/paths": "gapath_msgs/msg/Paths",
-        "/drive_end": "gapath_msgs/msg/DriveEnd",
-    },
-}
-"""Message type of every topic of a task, in the order of the log's channels."""
-
-TOPICS = TOPICS_OF["plan"] | TOPICS_OF["drive"]
-"""Message type of every topic."""
+"""Message type of every topic; a log has a channel for those that its run wrote to."""
 
 TYPES = get_typestore(Stores.ROS2_HUMBLE)
 for _name, _text in _OWN.items():

@@ -21,7 +21,7 @@ from gapath.recorders.mcap.format import (
     MAX_LOG,
     NS_PER_STEP,
     PROFILE,
-    TOPICS_OF,
+    TOPICS,
     schema,
 )
 from gapath.recorders.mcap.messages import Messages
@@ -50,11 +50,14 @@ class Recorder:
         If it is below 1.
     """
 
+    records = True
+
     flush_every: int
     _path: Path = field(init=False, repr=False)
     _file: IO[bytes] | None = field(init=False, repr=False, default=None)
     _writer: Any = field(init=False, repr=False)
     _channels: dict[str, int] = field(init=False, repr=False)
+    _schemas: dict[str, int] = field(init=False, repr=False)
     _messages: Messages = field(init=False, repr=False)
     _count: int = field(init=False, repr=False)
     _bytes: int = field(init=False, repr=False)
@@ -98,7 +101,7 @@ class Recorder:
                     f"at most {MAX_CHUNK // 2} and {MAX_LOG // 2}: fewer epochs or trials",
                 )
             time = step * NS_PER_STEP
-            self._writer.add_message(self._channels[topic], time, data, time, self._count)
+            self._writer.add_message(self._channel(topic), time, data, time, self._count)
             self._count += 1
             if self._count % self.flush_every == 0:
                 self._writer.flush()
@@ -108,13 +111,18 @@ class Recorder:
         self._writer.add_metadata(description.NAME, description.metadata(run))
         for name, data in description.attachments(run).items():
             self._writer.add_attachment(0, 0, name, "application/octet-stream", data)
-        schemas: dict[str, int] = {}
-        self._channels = {}
-        for topic, name in TOPICS_OF[run.task].items():
-            if name not in schemas:
+        self._channels, self._schemas = {}, {}
+
+    def _channel(self, topic: str) -> int:
+        """Give the number of a topic's channel, which is made when it is first written to."""
+        if topic not in self._channels:
+            name = TOPICS[topic]
+            if name not in self._schemas:
                 text = schema(topic)
-                schemas[name] = self._writer.register_schema(name, "ros2msg", text)
-            self._channels[topic] = self._writer.register_channel(topic, "cdr", schemas[name])
+                self._schemas[name] = self._writer.register_schema(name, "ros2msg", text)
+            number = self._writer.register_channel(topic, "cdr", self._schemas[name])
+            self._channels[topic] = number
+        return self._channels[topic]
 
     def close(self) -> list[str]:
         """Finish the log, make it durable, and give it its name."""
@@ -167,7 +175,7 @@ def salvage(path: str | Path, output: str | Path) -> int:
                 count += 1
             recorder.close()
         finally:
-            recorder.abort()  # Windows cannot remove a folder with an open file
+            recorder.abort()
         whole = Path(folder) / FILE
         saved = sum(1 for _ in read_events(whole))
         require(saved == count, output, f"{saved} events read back", f"{count}")

@@ -21,13 +21,14 @@ from gapath.events import (
     TrialStarted,
 )
 from gapath.grid import GridMap
-from gapath.problem import Evolution, Graph, PlanStatus
+from gapath.problem import Evolution, Graph
 from gapath.recorders.mcap import drive_messages
 from gapath.recorders.mcap.cdr import (
     ENCAPSULATION,
     INFO,
     WARN,
     Record,
+    answer_numbers,
     arrays_cdr,
     in_metres,
     log_record,
@@ -35,16 +36,18 @@ from gapath.recorders.mcap.cdr import (
     path_cdr,
     per_cent,
     pose_record,
+    read_answer,
     record,
     strings_cdr,
 )
 from gapath.recorders.mcap.format import TOPICS, TYPES
+from gapath.store.settings import text_of
 
 # What every trial writes is packed by hand, three times faster than by rosbags.
 _INT32, _FLOAT64 = np.dtype("<i4"), np.dtype("<f8")
 _TRIAL = struct.Struct("<QQ")
 _GA_RUN = struct.Struct("<QQII")
-_RESULT = struct.Struct("<QQQQdB?2x")  # padded for the count that follows
+_RESULT = struct.Struct("<QQQQQdddB?2x")  # padded for the count that follows
 
 
 class Messages:
@@ -58,6 +61,7 @@ class Messages:
 
     def __init__(self, run: RunStarted) -> None:
         self._run = run
+        self._settings = text_of(run.settings)
         self._drive = drive_messages.DriveMessages(run)
 
     def records(self, event: Event) -> Iterator[Record]:
@@ -78,7 +82,7 @@ class Messages:
                 yield from _run_started(event)
             case TrialStarted(step, trial, seed):
                 self._drive.begin()
-                texts = strings_cdr(self._run.planner, self._run.settings)
+                texts = strings_cdr(self._run.method, self._settings)
                 yield Record("/trial_start", step, ENCAPSULATION + _TRIAL.pack(trial, seed) + texts)
             case Evolved():
                 yield _ga_run(event)
@@ -97,8 +101,7 @@ class Messages:
             case DriveFinished():
                 yield from self._drive.finished(event)
             case RunFinished(step, trials, found):
-                done = "reached the target" if self._run.task == "drive" else "found a path"
-                yield log_record(step, INFO, f"run finished: {found} of {trials} trials {done}")
+                yield log_record(step, INFO, f"run finished: {found} of {trials} trials succeeded")
                 yield record("/run_end", step, trials, found)
 
 
@@ -110,7 +113,7 @@ def _run_started(run: RunStarted) -> Iterator[Record]:
     if len(run.optimal_path):
         yield Record("/optimal_path", 0, path_cdr(0, grid.to_metres(run.optimal_path)))
     text = (
-        f"run started: {run.experiment}, {run.planner} on {grid.name} "
+        f"run started: {run.experiment}, {run.method} on {grid.name} "
         f"from {problem.start} to {problem.target}, seed {run.seed}, {run.trials} trials"
     )
     yield log_record(0, INFO, text)
@@ -129,21 +132,14 @@ def _ga_run(event: Evolved) -> Record:
 
 
 def _trial_finished(event: TrialFinished, grid: GridMap) -> Iterator[Record]:
-    found = event.status is PlanStatus.FOUND
-    if len(event.path):
-        yield Record("/path", event.step, path_cdr(event.step, grid.to_metres(event.path)))
-    if not found:
-        yield log_record(event.step, WARN, f"trial {event.trial}: {event.status.sentence}")
-    head = _RESULT.pack(
-        event.trial,
-        event.epochs,
-        event.evaluations,
-        event.expansions,
-        event.cost,
-        event.status,
-        found,
-    )
-    yield Record("/result", event.step, arrays_cdr(head, np.asarray(event.path, _INT32)))
+    step, answer = event.step, event.answer
+    if len(answer.path):
+        yield Record("/path", step, path_cdr(step, grid.to_metres(answer.path)))
+    if not answer.feasible:
+        yield log_record(step, WARN, f"trial {event.trial}: {answer.status.sentence}")
+    numbers = answer_numbers(answer)
+    head = _RESULT.pack(event.trial, *numbers, answer.status, answer.feasible)
+    yield Record("/result", step, arrays_cdr(head, np.asarray(answer.path, _INT32)))
 
 
 def event(topic: str, step: int, data: bytes) -> Event | None:
@@ -201,9 +197,7 @@ def _read_surveyed(step: int, m: Any) -> Surveyed:
 
 
 def _read_finished(step: int, m: Any) -> TrialFinished:
-    status = PlanStatus(m.status)
-    path = np.array(m.path, dtype=np.int32).reshape(-1, 2)
-    return TrialFinished(step, m.trial, status, m.cost, m.epochs, m.evaluations, m.expansions, path)
+    return TrialFinished(step, m.trial, read_answer(m))
 
 
 _READERS: dict[str, Callable[[int, Any], Event]] = {

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from gapath.events import RunStarted, TrialStarted
 from gapath.grid import GridMap
+from gapath.store.settings import text_of
 
 Color = tuple[int, int, int]
 
@@ -45,10 +46,12 @@ def new_stream(run: RunStarted, trial: TrialStarted) -> rr.RecordingStream:
     grid = run.problem.map
     # A viewer keeps one layout an application, so with one only a second map would be shown
     # under the first one's name and within its bounds.
-    layout = _hash([run.planner, title(grid), grid.rows, grid.cols])
+    layout = _hash([run.method, title(grid), grid.rows, grid.cols])
     return rr.RecordingStream(
         f"gapath-{layout[:8]}",
-        recording_id=_hash([run.settings, run.planner, grid.digest, run.seed, trial.trial])[:32],
+        recording_id=_hash([text_of(run.settings), run.method, grid.digest, run.seed, trial.trial])[
+            :32
+        ],
         send_properties=False,  # would hold the time of day
     )
 
@@ -123,10 +126,10 @@ def document(
     table.insert(1, "| --- | --- |")
     versions = ", ".join(f"{name} {version}" for name, version in run.versions.items())
     return rr.TextDocument(
-        f"# {run.planner} on {run.problem.map.name}\n\n{sentence}.\n\n"
+        f"# {run.method} on {run.problem.map.name}\n\n{sentence}.\n\n"
         + "\n".join(table)
         + f"\n\n## Legend\n{legend}\n"
-        f"## Settings\n```yaml\n{run.settings.strip()}\n```\n\n{versions}\n",
+        f"## Settings\n```yaml\n{text_of(run.settings).strip()}\n```\n\n{versions}\n",
         media_type="text/markdown",
     )
 

@@ -1,10 +1,9 @@
 """What a Rerun recording of a drive shows: two maps, the robot, paths, modes, curves."""
 
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 import rerun as rr
-import yaml
 from numpy.typing import NDArray
 
 from gapath.events import (
@@ -20,6 +19,7 @@ from gapath.events import (
 from gapath.grid import GridMap
 from gapath.kernels.field_of_view import HEADING_X, HEADING_Y
 from gapath.kernels.units import OBSTACLE, SCALE
+from gapath.problem import Answer
 from gapath.recorders.rerun.drawing import (
     GREEN,
     GREY,
@@ -88,17 +88,17 @@ def recording(run: RunStarted, events: list[Event]) -> bytes:
     stream = new_stream(run, trial)
     memory = stream.memory_recording()
     stream.send_blueprint(layout(run.problem.map, TIMELINE, timed), make_active=False)
-    stream.send_recording_name(f"{run.problem.map.name} {run.planner} trial {trial.trial}")
-    settings = yaml.safe_load(run.settings)["drive"]
+    stream.send_recording_name(f"{run.problem.map.name} {run.method} trial {trial.trial}")
     _log_true_map(stream, run.problem.map)
     log_problem(stream, run, 2)
     _send_known_map(stream, drive)
-    _send_robot(stream, drive, settings["sensor"]["range"])
+    _send_robot(stream, drive, cast(int, run.settings["drive.sensor.range"]))
     _send_paths(stream, drive)
     _send_calls(stream, drive)
     _send_modes(stream, drive)
     time = [rr.TimeColumn(TIMELINE, sequence=drive.time(steps))]
-    left = _cost_left(run, events, settings["unknown_weight"])
+    unknown = cast(float, run.settings["drive.unknown_weight"])
+    left = _cost_left(run, events, unknown)
     send_curve(stream, "cost/left", time, left, "cost left", ORANGE)
     if timed:
         seconds = np.array([step.seconds for step in steps])
@@ -219,9 +219,9 @@ def _send_calls(stream: rr.RecordingStream, drive: _Drive) -> None:
         for adopted, name, width in ((True, "adopted", 5), (False, "not_adopted", 1.5)):
             answers: dict[int, list[NDArray[np.int32]]] = {}
             for call in drive.calls:
-                if (call.part, call.adopted) == (part, adopted) and len(call.path):
+                if (call.part, call.adopted) == (part, adopted) and len(call.answer.path):
                     step = call.step - drive.trial.step
-                    answers.setdefault(step, []).append(call.path)
+                    answers.setdefault(step, []).append(call.answer.path)
                     answers.setdefault(step + 1, [])
             if answers:
                 entity = f"map/calls/{part}/{name}"
@@ -231,8 +231,7 @@ def _send_calls(stream: rr.RecordingStream, drive: _Drive) -> None:
                 _send_strips(stream, entity, np.array(steps), strips)
     if drive.calls:
         texts = [
-            f"{call.part}{call.index} {call.status.name.lower().replace('_', ' ')}: {call.cost:g}"
-            f" {_effort(call)}{', adopted' if call.adopted else ''}"
+            f"{call.part}{call.index} {_told(call.answer)}{', adopted' if call.adopted else ''}"
             for call in drive.calls
         ]
         levels = ["INFO" if call.adopted else "DEBUG" for call in drive.calls]
@@ -240,8 +239,10 @@ def _send_calls(stream: rr.RecordingStream, drive: _Drive) -> None:
         stream.send_columns("calls", time, rr.TextLog.columns(text=texts, level=levels))
 
 
-def _effort(call: Called) -> str:
-    return f"in {call.epochs} epochs" if call.epochs else f"from {call.expansions} fields"
+def _told(answer: Answer) -> str:
+    effort = f"{answer.epochs} epochs" if answer.epochs else f"{answer.expansions} fields"
+    status = answer.status.name.lower().replace("_", " ")
+    return f"{status}: {answer.cost:g} {'in' if answer.epochs else 'from'} {effort}"
 
 
 def _send_modes(stream: rr.RecordingStream, drive: _Drive) -> None:

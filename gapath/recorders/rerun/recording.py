@@ -30,6 +30,8 @@ class Recorder:
         trial.
     """
 
+    records = True
+
     trials: list[int]
     _folder: Path = field(init=False, repr=False)
     _run: RunStarted = field(init=False, repr=False)

@@ -55,7 +55,7 @@ def recording(run: RunStarted, events: list[Event]) -> bytes:
     memory = stream.memory_recording()
     surveys = [event for event in events if isinstance(event, Surveyed)]
     stream.send_blueprint(_blueprint(run, evolutions), make_active=False)
-    stream.send_recording_name(f"{run.problem.map.name} {run.planner} trial {trial.trial}")
+    stream.send_recording_name(f"{run.problem.map.name} {run.method} trial {trial.trial}")
     log_problem(stream, run, 6)
     _log_map(stream, run.problem.map)
     for survey in surveys:
@@ -124,10 +124,10 @@ def _log_result(
     stream: rr.RecordingStream, finished: TrialFinished, last_epoch: int | None
 ) -> None:
     """Log the final path: at the last epoch, or for good where there are no epochs."""
-    if not len(finished.path):
+    if not len(finished.answer.path):
         return
     stream.log("map/final_path", line(GREEN, 3, draw_order=24), static=True)
-    strips = [centres(finished.path)]
+    strips = [centres(finished.answer.path)]
     if last_epoch is None:
         stream.log("map/final_path", rr.LineStrips2D.from_fields(strips=strips), static=True)
     else:  # not `set_time` and `log`, which would add the time of day
@@ -180,14 +180,14 @@ def _text(
 ) -> rr.TextDocument:
     """Write the panel of settings and result, in Markdown."""
     if evolutions:
-        effort = {"epochs": finished.epochs, "evaluations": finished.evaluations}
+        effort = {"epochs": finished.answer.epochs, "evaluations": finished.answer.evaluations}
     else:
-        effort = {"expansions": finished.expansions}
+        effort = {"expansions": finished.answer.expansions}
     rows = {
-        "status": finished.status.name.lower().replace("_", " "),
-        "cost": _number(finished.cost),
+        "status": finished.answer.status.name.lower().replace("_", " "),
+        "cost": _number(finished.answer.cost),
         "optimal cost": _number(run.optimal_cost),
-        "fields of the path": len(finished.path),
+        "fields of the path": len(finished.answer.path),
         **effort,
         **problem_rows(run, trial),
     }
@@ -205,7 +205,7 @@ def _text(
         f"- **green**: the path found\n- **blue**: a path of least cost{point}\n"
         "- **map**: the brighter, the dearer; white: obstacle\n"
     )
-    return document(run, finished.status.sentence.capitalize(), rows, legend)
+    return document(run, finished.answer.status.sentence.capitalize(), rows, legend)
 
 
 def _number(value: float) -> str:

@@ -1,0 +1,273 @@
+"""What there is: components by kind and YAMLs by name, of gapath and of installed packages.
+
+A package of one's own adds components by entry points. Their group is the name of gapath's own
+package of such modules, for example ``gapath.planners``; their name is the kind, their value a
+module. An entry point of the group ``gapath.conf`` names a package that holds YAMLs as ``conf``
+does: ``planner/NAME.yaml``.
+"""
+
+import importlib
+import importlib.util
+import pkgutil
+from functools import lru_cache
+from importlib import metadata
+from importlib.resources import files
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import yaml
+
+from gapath.errors import InputError, require
+
+PACKAGES = {
+    "map": "gapath.mapio",
+    "planner": "gapath.planners",
+    "navigator": "gapath.navigators",
+    "recorder": "gapath.recorders",
+    "task": "gapath.tasks",
+    "metric": "gapath.metrics",
+}
+"""What is found -> the package that holds a module for each kind of it."""
+
+OFFERS = {
+    "map": "Reader",
+    "planner": "Planner",
+    "navigator": "Navigator",
+    "recorder": "Recorder",
+    "task": "Task",
+}
+"""The class that such a module offers; a metric is a module by itself."""
+
+
+@lru_cache
+def entry_points(group: str) -> dict[str, metadata.EntryPoint]:
+    """Give the entry points of installed packages in a group, by name.
+
+    Parameters
+    ----------
+    group : str
+        For example "gapath.planners".
+
+    Returns
+    -------
+    dict of str to EntryPoint
+        In the order of their names.
+
+    Raises
+    ------
+    InputError
+        If two packages use the same name.
+    """
+    found: dict[str, metadata.EntryPoint] = {}
+    for entry in sorted(metadata.entry_points(group=group), key=lambda entry: entry.name):
+        other = found.setdefault(entry.name, entry)
+        one = other.value == entry.value  # an installed package may be seen twice
+        both = f"{other.value} and {entry.value}"
+        require(one, f"entry point {group}: {entry.name}", both, "one package with that name")
+    return found
+
+
+@lru_cache
+def kinds(group: str) -> list[str]:
+    """List what a group's ``kind`` can name.
+
+    Parameters
+    ----------
+    group : str
+        A key of `PACKAGES`.
+
+    Returns
+    -------
+    list of str
+        Modules of gapath's own package, those with a leading underscore left out, and entry
+        points.
+
+    Raises
+    ------
+    InputError
+        If an installed package uses a name of gapath's own.
+    """
+    package = importlib.import_module(PACKAGES[group])
+    own = [module.name for module in pkgutil.iter_modules(package.__path__)]
+    own = [name for name in own if not name.startswith("_")]
+    others = entry_points(PACKAGES[group])
+    for name in own:
+        require(
+            name not in others,
+            f"entry point {PACKAGES[group]}: {name}",
+            others[name].value if name in others else "",
+            "a name that gapath does not use itself",
+        )
+    return sorted([*own, *others])
+
+
+def load(group: str, kind: str) -> Any:
+    """Import a component.
+
+    Parameters
+    ----------
+    group : str
+        A key of `PACKAGES`.
+    kind : str
+        One of `kinds`.
+
+    Returns
+    -------
+    type or module
+        The class of `OFFERS`; the module itself where a group has none.
+
+    Raises
+    ------
+    InputError
+        If an installed package's module cannot be imported or does not offer it.
+    """
+    other = entry_points(PACKAGES[group]).get(kind)
+    if other is None:
+        module = importlib.import_module(f"{PACKAGES[group]}.{kind}")
+    else:
+        module = imported(other)
+    if group not in OFFERS:
+        return module
+    offered = getattr(module, OFFERS[group], None)
+    require(offered is not None, module.__name__, "a module without it", f"a {OFFERS[group]}")
+    return offered
+
+
+def imported(entry: metadata.EntryPoint) -> ModuleType:
+    """Import the module that an entry point of an installed package names.
+
+    Raises
+    ------
+    InputError
+        If it cannot be imported.
+    """
+    try:
+        return importlib.import_module(entry.value)
+    except ImportError as error:
+        where = f"entry point {entry.group}: {entry.name} = {entry.value}"
+        raise InputError(where, error, "a module that can be imported") from error
+
+
+@lru_cache
+def readers() -> dict[str, str]:
+    """Tell which map reader reads which files: kinds by the ending of a file name."""
+    found: dict[str, str] = {}
+    for kind in kinds("map"):
+        module = importlib.import_module(load("map", kind).__module__)
+        found |= dict.fromkeys(getattr(module, "SUFFIXES", ()), kind)
+    return found
+
+
+def reader_of(path: str, where: str) -> str:
+    """Tell which reader reads a file.
+
+    Parameters
+    ----------
+    path : str
+        The file.
+    where : str
+        The setting that names it, for messages.
+
+    Returns
+    -------
+    str
+        A kind of map reader.
+
+    Raises
+    ------
+    InputError
+        If no reader knows the file's ending.
+    """
+    for suffix, kind in readers().items():
+        if path.lower().endswith(suffix):
+            return kind
+    raise InputError(where, path, f"a file name ending in {', '.join(readers())}")
+
+
+@lru_cache
+def conf_packages() -> list[str]:
+    """Give the packages that hold YAMLs: gapath's own first, whose names win."""
+    return ["gapath.conf", *(entry.value for entry in entry_points("gapath.conf").values())]
+
+
+def yaml_names(group: str) -> list[str]:
+    """List the YAMLs of a group.
+
+    Parameters
+    ----------
+    group : str
+        A folder of ``conf``.
+
+    Returns
+    -------
+    list of str
+        File names without their ending.
+    """
+    folders = [files(package) / group for package in conf_packages()]
+    paths = [path for folder in folders if folder.is_dir() for path in folder.iterdir()]
+    return sorted({path.name[:-5] for path in paths if path.name.endswith(".yaml")})
+
+
+def yaml_values(group: str, name: str) -> dict[str, Any]:
+    """Read a YAML of ``conf`` and those that its defaults list names.
+
+    Parameters
+    ----------
+    group : str
+        A folder of ``conf``, for example "planner".
+    name : str
+        For example "kg18_test3" or "ga3".
+
+    Returns
+    -------
+    dict
+        ``kind`` and the settings.
+
+    Raises
+    ------
+    InputError
+        If there is no such YAML.
+    """
+    candidates = [files(package) / group / f"{name}.yaml" for package in conf_packages()]
+    file = next((path for path in candidates if path.is_file()), None)
+    if file is None:
+        raise InputError(group, repr(name), f"one of {', '.join(yaml_names(group))}")
+    own: dict[str, Any] = yaml.safe_load(file.read_text("utf-8"))
+    bases = [base for base in own.pop("defaults", []) if base != "_self_"]
+    values: dict[str, Any] = {}
+    for base in bases:
+        values |= yaml_values(group, base)
+    return values | own
+
+
+def _all_entry_points() -> list[metadata.EntryPoint]:
+    groups = (*PACKAGES.values(), "gapath.conf", "gapath.tables")
+    return [entry for group in groups for entry in entry_points(group).values()]
+
+
+def other_packages() -> dict[str, str]:
+    """Give the installed packages that add components: name -> version."""
+    found = {e.dist.name: e.dist.version for e in _all_entry_points() if e.dist is not None}
+    return dict(sorted(found.items()))
+
+
+@lru_cache
+def other_sources() -> list[tuple[str, Path]]:
+    """List the sources of installed packages that add components: what they are changes results.
+
+    Returns
+    -------
+    list of (str, Path)
+        Each file's name, with its package's folder as the first part, and where it is.
+    """
+    modules = {entry.value.partition(".")[0] for entry in _all_entry_points()}
+    found = []
+    for module in sorted(modules):
+        spec = importlib.util.find_spec(module)
+        for top in spec.submodule_search_locations or () if spec else ():
+            paths = sorted([*Path(top).rglob("*.py"), *Path(top).rglob("*.yaml")])
+            found += [(f"{module}/{path.relative_to(top).as_posix()}", path) for path in paths]
+        if spec and spec.origin and not spec.submodule_search_locations:
+            found.append((f"{module}.py", Path(spec.origin)))
+    return found

@@ -1,0 +1,1 @@
+"""Metrics: one module each, and each is a column of every row, table and CSV."""

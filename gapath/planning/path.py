@@ -1,0 +1,84 @@
+"""What a path is like, computed from its fields alone."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gapath.grid import GridMap
+from gapath.kernels.units import SCALE
+
+_EIGHTHS = np.array([[5, 6, 7], [4, 0, 0], [3, 2, 1]])
+"""Heading of a step (dx, dy) in eighths of a turn, clockwise from +x, at [dy + 1, dx + 1]."""
+
+
+def path_weights(grid: GridMap, path: NDArray[np.int32]) -> float:
+    """Sum up the weights of a path's fields, start and target included: KG18 eq. (5).
+
+    Parameters
+    ----------
+    grid : GridMap
+        The map.
+    path : (n, 2) int32
+        Free fields (x, y).
+
+    Returns
+    -------
+    float
+        Exact, in multiples of 1 / SCALE.
+    """
+    return int(grid.table[path[:, 1], path[:, 0]].sum(dtype=np.int64)) / SCALE
+
+
+def octile_length(path: NDArray[np.int32]) -> float:
+    """Measure a path: 1 for a straight step, sqrt(2) for a diagonal one.
+
+    Parameters
+    ----------
+    path : (n, 2) int32
+        Fields (x, y), each a neighbour of the one before; n >= 1.
+
+    Returns
+    -------
+    float
+        In fields.
+    """
+    steps = np.diff(path, axis=0)
+    diagonal = int(np.count_nonzero(steps.all(axis=1)))
+    return len(steps) - diagonal + diagonal * math.sqrt(2)
+
+
+def heading_changes(path: NDArray[np.int32]) -> NDArray[np.int64]:
+    """Give by how much the heading changes from each step to the next.
+
+    Parameters
+    ----------
+    path : (n, 2) int32
+        Fields (x, y), each a neighbour of the one before; n >= 1.
+
+    Returns
+    -------
+    (max(n - 2, 0),) int64
+        In eighths of a turn, 0 to 4.
+    """
+    steps = np.diff(path, axis=0)
+    headings = _EIGHTHS[steps[:, 1] + 1, steps[:, 0] + 1]
+    change = np.abs(np.diff(headings)) % 8
+    return np.asarray(np.minimum(change, 8 - change))
+
+
+def polyline_length(way_points: NDArray[np.int32]) -> float:
+    """Measure the straight lines that join way points.
+
+    Parameters
+    ----------
+    way_points : (n, 2) int32
+        Fields (x, y).
+
+    Returns
+    -------
+    float
+        The Euclidean length, in fields.
+    """
+    steps = np.diff(way_points.astype(np.float64), axis=0)
+    return float(np.sqrt((steps * steps).sum(axis=1)).sum())

@@ -1,0 +1,102 @@
+"""What a run is named by: everything that its results depend on."""
+
+import hashlib
+from collections.abc import Iterable
+from functools import lru_cache
+from importlib import metadata
+from pathlib import Path
+
+from gapath.discovery import other_packages, other_sources
+from gapath.events import Settings
+from gapath.problem import Problem
+from gapath.store.settings import text_of
+
+VERSIONED = ("gapath", "numpy", "numba", "mcap", "rosbags", "rerun-sdk", "hydra-core", "pyarrow")
+
+_NO_RESULT = ("trials", "recorder")
+"""Settings that change no trial."""
+
+
+@lru_cache
+def code_hash() -> str:
+    """Hash the sources of gapath, and of installed packages that add components.
+
+    Returns
+    -------
+    str
+        Sixteen hexadecimal digits.
+    """
+    package = Path(__file__).parents[1]
+    own = sorted(package.rglob("*.py"), key=lambda path: path.as_posix())
+    named = [(path.relative_to(package).as_posix(), path) for path in own]
+    named = [(name, path) for name, path in named if not name.startswith("pipelines/")]
+    digest = hashlib.sha256()
+    for name, path in [*named, *other_sources()]:  # pipelines change no run
+        digest.update(name.encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+@lru_cache
+def versions() -> dict[str, str]:
+    """Give the versions of gapath, of Python, and of what decides results and files.
+
+    Returns
+    -------
+    dict of str to str
+        Name -> version; "code" is `code_hash`.
+    """
+    import platform
+
+    found = {name: metadata.version(name) for name in VERSIONED}
+    others = other_packages()
+    return {"python": platform.python_version(), "code": code_hash(), **found, **others}
+
+
+def setting_hash(settings: Settings, method: str, problem: Problem) -> str:
+    """Hash what two runs must share to try the same thing, with whatever code and however often.
+
+    Parameters
+    ----------
+    settings : mapping
+        The run's settings, flat.
+    method : str
+        The planner's or navigator's name in tables.
+    problem : Problem
+        Map, start, target: files named by the settings may have changed.
+
+    Returns
+    -------
+    str
+        Sixteen hexadecimal digits.
+    """
+    kept = {k: v for k, v in settings.items() if k.partition(".")[0] not in _NO_RESULT}
+    return _hash([text_of(dict(sorted(kept.items()))), method, *_posed(problem)])
+
+
+def run_key(settings: Settings, method: str, problem: Problem) -> str:
+    """Name a run by everything that its results depend on.
+
+    Parameters
+    ----------
+    settings : mapping
+        The run's settings, flat.
+    method : str
+        The planner's or navigator's name in tables.
+    problem : Problem
+        Map, start, target: files named by the settings may have changed.
+
+    Returns
+    -------
+    str
+        Sixteen hexadecimal digits.
+    """
+    code = [code_hash(), metadata.version("gapath")]
+    return _hash([text_of(settings), method, *_posed(problem), *code])
+
+
+def _posed(problem: Problem) -> list[str]:
+    return [problem.map.digest, f"{problem.start} {problem.target}"]
+
+
+def _hash(parts: Iterable[str]) -> str:
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:16]

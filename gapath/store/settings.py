@@ -1,0 +1,179 @@
+"""A run's settings as data: flat, and as the text that a log keeps.
+
+A flat mapping has a value for each dotted name, lists are indexed: ``planner.population``,
+``map.start[0]``, ``navigator.replan[1].control_points``. Empty lists and mappings have names
+that end in ``[]`` and ``.``, and no value.
+"""
+
+import json
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, TypeAlias, cast
+
+import yaml
+
+from gapath.errors import InputError, require
+from gapath.events import Settings
+
+Value: TypeAlias = str | int | float | bool | None
+
+_STEP = re.compile(r"\[(\d*)\]|\.?([^.\[\]]+)|\.$")
+
+
+def flatten(value: object, name: str = "") -> dict[str, Value]:
+    """Make nested settings flat.
+
+    Parameters
+    ----------
+    value : object
+        Mappings and lists of mappings, lists and values.
+    name : str
+        What stands before all names.
+
+    Returns
+    -------
+    dict of str to str, int, float, bool or None
+        In the order of the settings.
+    """
+    if isinstance(value, Mapping):
+        items = [(f"{name}.{key}".lstrip("."), item) for key, item in value.items()]
+        empty = f"{name}."
+    elif isinstance(value, list | tuple):
+        items = [(f"{name}[{i}]", item) for i, item in enumerate(value)]
+        empty = f"{name}[]"
+    else:
+        plain = value is None or isinstance(value, str | int | float | bool)
+        require(plain, f"setting {name}", value, "text, a number, true, false or null")
+        return {name: cast(Value, value)}
+    if not items:
+        return {empty: None} if name else {}
+    return {leaf: item for key, part in items for leaf, item in flatten(part, key).items()}
+
+
+def nested(settings: Settings) -> dict[str, Any]:
+    """Undo `flatten`.
+
+    Parameters
+    ----------
+    settings : mapping
+        Flat settings.
+
+    Returns
+    -------
+    dict
+        Nested settings.
+
+    Raises
+    ------
+    InputError
+        If a name is none, or does not fit the others.
+    """
+    root: dict[str, Any] = {}
+    for name, value in settings.items():
+        steps = list(_STEP.finditer(name))
+        good = steps and "".join(step.group() for step in steps) == name
+        require(bool(good), f"setting {name}", repr(value), "a name such as planner.population")
+        _put(root, [_key(step) for step in steps], name, value)
+    return root
+
+
+def _key(step: re.Match[str]) -> str | int | None:
+    """Give a key of a mapping, an index of a list, or None for the end of something empty."""
+    if step.group(1):
+        return int(step.group(1))
+    return step.group(2)
+
+
+def _put(root: dict[str, Any], keys: list[str | int | None], name: str, value: Value) -> None:
+    place: Any = root
+    for i, key in enumerate(keys):
+        last = i == len(keys) - 1
+        ends_empty = i == len(keys) - 2 and keys[-1] is None
+        inner: Any = value
+        if ends_empty:
+            inner = [] if name.endswith("[]") else {}
+        elif not last:
+            inner = [] if isinstance(keys[i + 1], int) else {}
+        if isinstance(place, list) and key == len(place):
+            place.append(inner)
+        elif isinstance(place, dict) and isinstance(key, str):
+            inner = place.setdefault(key, inner)
+        elif not (isinstance(place, list) and isinstance(key, int) and key == len(place) - 1):
+            raise InputError(f"setting {name}", repr(value), "a name that fits the others")
+        if ends_empty:
+            return
+        place = place[key]
+
+
+def text_of(settings: Settings) -> str:
+    """Write flat settings as text, a line each, which is YAML too.
+
+    Parameters
+    ----------
+    settings : mapping
+        Flat settings.
+
+    Returns
+    -------
+    str
+        Lines ``name: value``, the values as JSON.
+    """
+    return "".join(f"{name}: {json.dumps(value)}\n" for name, value in settings.items())
+
+
+def of_text(text: str) -> dict[str, Value]:
+    """Read what `text_of` wrote: plain values only, whoever wrote it.
+
+    Parameters
+    ----------
+    text : str
+        Lines ``name: value``.
+
+    Returns
+    -------
+    dict of str to str, int, float, bool or None
+        Flat settings.
+
+    Raises
+    ------
+    InputError
+        If a line is something else.
+    """
+    settings: dict[str, Value] = {}
+    for line in text.splitlines():
+        name, colon, shown = line.partition(": ")
+        try:
+            value = json.loads(shown)
+        except ValueError as error:
+            raise InputError("settings", line, "name: value") from error
+        plain = value is None or isinstance(value, str | int | float | bool)
+        require(bool(colon) and plain and name not in settings, "settings", line, "name: value")
+        settings[name] = value
+    return settings
+
+
+def read_settings(path: Path) -> dict[str, Value]:
+    """Read a run folder's ``config.yaml``.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    dict of str to str, int, float, bool or None
+        Flat settings.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or holds something else.
+    """
+    try:
+        content = yaml.safe_load(path.read_text("utf-8"))
+    except (OSError, ValueError, yaml.YAMLError) as error:
+        raise InputError(path.name, type(error).__name__, "readable YAML") from error
+    require(isinstance(content, dict), path.name, type(content).__name__, "a mapping of settings")
+    return flatten(content)
