@@ -1,26 +1,28 @@
 """What every planner, recorder and map reader must do; they are found, not listed."""
 
 import inspect
-from importlib import import_module
 from importlib.resources import files
 
 import numpy as np
 import pytest
 
-from gapath import components
+from gapath import components, discovery
 from gapath.discovery import yaml_values
 from gapath.errors import InputError
 from gapath.events import Recorder, RunFinished
 from gapath.grid import GridMap
 from gapath.kernels import rng
 from gapath.planning.flaw import flaw
-from gapath.planning.metrics import line_length
+from gapath.planning.path import polyline_length
 from gapath.planning.shortest_path import shortest_path
 from gapath.planning.simulation import plan_once, plan_trials
 from gapath.problem import CornerCutting, Plan, Planner, PlanStatus, Problem
 from gapath.runs import config
 from gapath.runs.experiment import execute, run_started
-from gapath.tasks.plan import PlanTask, trial_events
+from gapath.runs.naming import Method
+from gapath.store.settings import flatten
+from gapath.tasks.plan import Task as PlanTask
+from gapath.tasks.plan import trial_events
 
 
 def yamls(group):
@@ -42,18 +44,17 @@ def make_problem(rule=CornerCutting.ALLOW):
     return Problem(GridMap("wall", weights), (4, 20), (54, 20), rule)
 
 
-@pytest.mark.parametrize("group", ["map", "planner", "navigator", "recorder"])
+@pytest.mark.parametrize("group", sorted(discovery.OFFERS.keys() - {"task"}))
 def test_every_module_has_a_yaml_and_every_yaml_a_module(group):
     named = {yaml_values(group, name)["kind"] for name in yamls(group)}
     assert named == set(discovery.kinds(group))
 
 
-@pytest.mark.parametrize("group", ["map", "planner", "navigator", "recorder"])
+@pytest.mark.parametrize("group", sorted(discovery.OFFERS.keys() - {"task"}))
 def test_every_value_of_a_yaml_is_a_field_without_default(group):
     for name in yamls(group):
         values = yaml_values(group, name)
-        module = import_module(f"{discovery.PACKAGES[group]}.{values.pop('kind')}")
-        target = getattr(module, discovery.OFFERS[group])
+        target = discovery.load(group, values.pop("kind"))
         wanted = inspect.signature(target).parameters
         assert set(values) == set(wanted), name
         assert all(p.default is inspect.Parameter.empty for p in wanted.values()), name
@@ -110,7 +111,7 @@ def test_an_evolution_tells_its_epochs(name):
     assert evolution.way_points.shape[2] == 2
     if evolution.genotype == "keypoints":  # fitness is a length, on a resized map that of blocks
         resized = plan.survey().block > 1
-        length = line_length(evolution.way_points[-1])
+        length = polyline_length(evolution.way_points[-1])
         assert evolution.best[-1] == pytest.approx(length, rel=0.1 if resized else 1e-5)
     else:
         assert evolution.best[-1] == plan.cost
@@ -120,13 +121,13 @@ def test_an_evolution_tells_its_epochs(name):
 def make_run(recorders, planner, tmp_path, trials=3):
     return config.Run(
         "contract",
-        "any",
+        Method("any"),
         make_problem(),
         PlanTask(planner),
         recorders,
         4,
         trials,
-        f"task: plan\nplanner: {yaml_values('planner', 'ga1')}\n",
+        flatten({"task": "plan", "planner": yaml_values("planner", "ga1")}),
         str(tmp_path),
         False,
     )

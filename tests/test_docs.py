@@ -4,7 +4,6 @@ import re
 import runpy
 import shlex
 import shutil
-from dataclasses import asdict
 from importlib import import_module
 from pathlib import Path
 
@@ -24,6 +23,7 @@ from gapath.commands import run as cli
 from gapath.pipelines.report import cli as report_cli
 from gapath.problem import CornerCutting
 from gapath.runs import config
+from gapath.task import find_task
 
 ROOT = Path(__file__).parents[1]
 PAGES = [
@@ -218,11 +218,11 @@ def check_gapath(words):
             jobs = BasicSweeper.split_arguments(parsed, None)[0]
         for overrides in jobs:
             loose = OmegaConf.to_container(compose("config", overrides=overrides))
-            settings = components.typed(config.Settings, loose, "")
-            config.make_task(asdict(settings))
-            for name, values in settings.recorder.items():
+            root, chosen = config.split(loose)
+            find_task(root.task).make(chosen)
+            for name, values in root.recorder.items():
                 components.build("recorder", values, f"recorder.{name}")
-            components.build("map", settings.map, "map")
+            components.build("map", root.map, "map")
 
 
 CHECKS = {"gapath": check_gapath, "gapath-log": check_log, "gapath-report": check_report}

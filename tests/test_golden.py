@@ -23,7 +23,9 @@ from gapath.problem import Problem
 from gapath.recorders import mcap
 from gapath.runs.config import Run
 from gapath.runs.experiment import execute
-from gapath.tasks.plan import PlanTask
+from gapath.runs.naming import Method
+from gapath.store.settings import flatten
+from gapath.tasks.plan import Task as PlanTask
 
 GOLDEN = Path(__file__).parent / "golden"
 
@@ -58,13 +60,13 @@ def run(folder, map_name, planner, trials=2, **values):
     return execute(
         Run(
             "golden",
-            planner,
+            Method(planner),
             problem,
             PlanTask(made),
             recorders,
             7,
             trials,
-            f"task: plan\nplanner: {settings}\n",
+            flatten({"task": "plan", "planner": settings}),
             str(folder),
             False,
         ),
@@ -139,10 +141,10 @@ def test_two_runs_give_the_same_log_byte_for_byte(tmp_path):
 def test_a_trial_does_not_depend_on_how_many_others_run(tmp_path):
     rows = [run(tmp_path / str(n), "kg18_test3", "ga2", n).rows for n in (2, 5)]
     for alone, in_company in zip(*rows, strict=False):
-        assert (alone.cost, alone.epochs, alone.length) == (
+        assert (alone.cost, alone.epochs, alone.metrics) == (
             in_company.cost,
             in_company.epochs,
-            in_company.length,
+            in_company.metrics,
         )
 
 

@@ -23,7 +23,7 @@ from gapath.problem import Problem
 from gapath.recorders import mcap
 from gapath.runs.config import Run
 from gapath.runs.experiment import execute
-from gapath.tasks.plan import PlanTask
+from gapath.tasks.plan import Task as PlanTask
 
 PLANNERS = {
     "visibility_ga": {},

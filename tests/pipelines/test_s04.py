@@ -18,7 +18,7 @@ from gapath.problem import CornerCutting, Problem
 from gapath.recorders import mcap
 from gapath.runs.config import Run
 from gapath.runs.experiment import execute
-from gapath.tasks.plan import PlanTask
+from gapath.tasks.plan import Task as PlanTask
 
 PERCENT = {  # as the paper prints them, by search space
     1: (100, 93.3, 93.3), 2: (0, 86.7, 100), 3: (73, 86.7, 100), 4: (53, 80, 100),

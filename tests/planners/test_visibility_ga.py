@@ -20,7 +20,7 @@ from gapath.kernels import rng
 from gapath.kernels.units import SCALE
 from gapath.planners.visibility_ga import PROFILES
 from gapath.planning.flaw import flaw
-from gapath.planning.metrics import line_length
+from gapath.planning.path import polyline_length
 from gapath.problem import PlanStatus, Problem
 from gapath.survey.obstacle_image import dilate
 
@@ -129,7 +129,7 @@ def test_every_scene_has_valid_paths_that_keep_their_distance(scene, name):
         assert plan.epochs <= 200
         assert [*plan.stages][-3:] == ["keypoints", "graph", "genetic algorithm"]
         if plan.survey().block == 1:
-            assert plan.evolution.best[-1] == pytest.approx(line_length(plan.lines()), abs=1e-3)
+            assert plan.evolution.best[-1] == pytest.approx(polyline_length(plan.lines()), abs=1e-3)
     for plan in plans:
         assert plan.feasible or plan.status is PlanStatus.NOT_FOUND
 
@@ -138,12 +138,12 @@ def test_every_scene_has_valid_paths_that_keep_their_distance(scene, name):
 def test_without_a_limit_it_comes_close_to_the_exact_length(scene):
     """Never below it, at best within a few per cent (M22 Sec. III, Figs 10 and 11)."""
     problem = problem_of(scene)
-    exact = line_length(make("visibility_astar").plan(problem, rng.stream(0)).lines())
+    exact = polyline_length(make("visibility_astar").plan(problem, rng.stream(0)).lines())
     unlimited = [
         make("visibility_ga_unlimited").plan(problem, rng.stream(1, trial)) for trial in range(3)
     ]
     assert {plan.epochs for plan in unlimited} == {829}
-    lengths = [line_length(plan.lines()) for plan in unlimited]
+    lengths = [polyline_length(plan.lines()) for plan in unlimited]
     assert min(lengths) >= exact * (1 - 1e-12)
     assert min(lengths) <= 1.05 * exact
 
@@ -156,7 +156,7 @@ def test_more_generations_are_better_on_average():
         for scene in SCENES[:4]:
             problem, planner = problem_of(scene), make(name)
             plans = [planner.plan(problem, rng.stream(3, trial)) for trial in range(5)]
-            lengths += [line_length(plan.lines()) for plan in plans if plan.feasible]
+            lengths += [polyline_length(plan.lines()) for plan in plans if plan.feasible]
         means[name] = np.mean(lengths)
     assert means["visibility_ga_unlimited"] < means["visibility_ga"]
 
@@ -167,7 +167,7 @@ def test_without_obstacles_it_goes_straight(resize):
     plan = gapath.plan(grid, (3, 50), (77, 5), "visibility_ga", resize=resize)
     straight = np.hypot(74, 45)
     assert plan.feasible
-    assert line_length(plan.lines()) == pytest.approx(straight)
+    assert polyline_length(plan.lines()) == pytest.approx(straight)
     assert plan.evolution.best[-1] == pytest.approx(straight, rel=0.05 if resize else 1e-6)
     assert plan.evolution.chromosomes.shape[1] == 1  # at least one gene
 
@@ -180,7 +180,7 @@ def test_best_and_mean_count_in_fields_of_the_map_also_where_it_is_resized():
     worst = [plan.evolution.mean[0] for plan in (full, small)]
     assert worst[0] == pytest.approx(worst[1], rel=0.1)  # mostly 2 Ax + 2 Ay
     assert max(worst) <= 2800
-    assert small.evolution.best[-1] == pytest.approx(line_length(small.lines()), rel=0.02)
+    assert small.evolution.best[-1] == pytest.approx(polyline_length(small.lines()), rel=0.02)
     assert (small.evolution.way_points.reshape(-1, 2).max(axis=0) < (800, 600)).all()
 
 

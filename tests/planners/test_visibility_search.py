@@ -16,7 +16,7 @@ from gapath.grid import GridMap
 from gapath.kernels import rng
 from gapath.kernels.units import SCALE
 from gapath.planning.flaw import flaw
-from gapath.planning.metrics import line_length
+from gapath.planning.path import polyline_length
 from gapath.problem import PlanStatus, Problem
 from gapath.survey.obstacle_image import dilate
 
@@ -50,11 +50,11 @@ def test_exact_planners_agree_on_every_scene(scene):
         assert plan.feasible
         assert flaw(problem, plan.path, plan.cost) is None
         assert keeps_its_distance(problem, plan, 6)
-        assert line_length(plan.lines()) >= np.hypot(*np.subtract(grid.start, grid.target))
+        assert polyline_length(plan.lines()) >= np.hypot(*np.subtract(grid.start, grid.target))
         assert [*plan.stages] == ["dilation", "keypoints", "graph", "search"]
         assert plan.evolution is None and plan.epochs == plan.evaluations == 0
     for star, dijkstra in (plans[:2], plans[2:]):
-        assert line_length(star.lines()) == pytest.approx(line_length(dijkstra.lines()))
+        assert polyline_length(star.lines()) == pytest.approx(polyline_length(dijkstra.lines()))
         assert 0 < star.expansions <= dijkstra.expansions
         assert star.survey().edges.tolist() == dijkstra.survey().edges.tolist()
 
@@ -68,7 +68,7 @@ def test_resized_scenes_have_valid_paths_nearly_as_short(scene):
     assert keeps_its_distance(problem, small, 6)
     assert keeps_to_its_lines(small)
     assert small.survey().block > 1
-    assert line_length(small.lines()) < 1.1 * line_length(full.lines())
+    assert polyline_length(small.lines()) < 1.1 * polyline_length(full.lines())
     assert "resizing" in small.stages
 
 
@@ -101,7 +101,7 @@ def test_paths_are_shortest_and_keep_their_distance(problem, radius, resize, key
     if graph.block == 1:
         pieces = zip(plan.lines()[:-1].tolist(), plan.lines()[1:].tolist(), strict=True)
         assert sum(twin.line_length(a, b) for a, b in pieces) == shortest
-        assert line_length(plan.lines()) == pytest.approx(shortest / SCALE, abs=1e-3)
+        assert polyline_length(plan.lines()) == pytest.approx(shortest / SCALE, abs=1e-3)
 
 
 def resized(radius):

@@ -22,7 +22,7 @@ from gapath.events import (
     TrialStarted,
 )
 from gapath.grid import GridMap
-from gapath.problem import Evolution, Graph, Plan, PlanStatus, Problem
+from gapath.problem import Answer, Evolution, Graph, Plan, PlanStatus, Problem
 from gapath.recorders import mcap
 
 
@@ -49,7 +49,7 @@ def example(trials=6, epochs=8):
     grid = GridMap("Übung 3", weights, (0, 0), (8, 6), origin=(1.0, -2.0, 0.5), resolution=0.05)
     path = np.array([[0, 0], [1, 1], [1, 2]], dtype=np.int32)
     run = RunStarted(
-        "table1", "ga3", "plan", Problem(grid, (0, 0), (8, 6)), 7, trials, "planner:\n  kind: ga\n",
+        "table1", "ga3", "plan", Problem(grid, (0, 0), (8, 6)), 7, trials, {"planner.kind": "ga"},
         {"gapath": "0.1.0", "numpy": "2.4.6"}, path, 2.5,
     )  # fmt: skip
     events, step = [run], 0
@@ -75,7 +75,9 @@ def example(trials=6, epochs=8):
         events.append(Evolved(step, trial, 0, evolution))
         step += epochs
         walked = path if found else path[:0]
-        events.append(TrialFinished(step, trial, status, 1.5, epochs, 40 * epochs, 0, walked))
+        obstacles = 0 if found else 2
+        answer = Answer(status, walked, 1.5, obstacles, 100.0, epochs, 40 * epochs)
+        events.append(TrialFinished(step, trial, answer))
     events.append(RunFinished(step, trials, sum(trial % 3 > 0 for trial in range(trials))))
     return events
 
@@ -87,7 +89,7 @@ def example_drives(trials=2):
     to (8, 6) with a sensor of range 1.
     """
     run = dataclasses.replace(
-        example(trials)[0], experiment="drives", planner="kg18", task="drive", settings=SETTINGS
+        example(trials)[0], experiment="drives", method="kg18", task="drive", settings=SETTINGS
     )
     events, step = [run], 0
     for trial in range(trials):
@@ -98,12 +100,12 @@ def example_drives(trials=2):
     return events
 
 
-SETTINGS = """\
-task: drive
-drive:
-  sensor: {range: 1, occlusion: false}
-  unknown_weight: 0.5
-"""
+SETTINGS = {
+    "task": "drive",
+    "drive.sensor.range": 1,
+    "drive.sensor.occlusion": False,
+    "drive.unknown_weight": 0.5,
+}
 
 
 def _drive(grid, trial):
@@ -111,7 +113,7 @@ def _drive(grid, trial):
     first = np.array([[0, 0], [1, 1], [2, 2], [3, 3], [4, 4]], dtype=np.int32)
     second = np.array([[1, 1], [1, 2], [0, 3], [1, 4], [2, 5], [3, 6], [4, 6]], dtype=np.int32)
     found = Plan(PlanStatus.FOUND, first, 2.0, epochs=3, evaluations=40)
-    failed = Plan(PlanStatus.NOT_FOUND, first[:0], 3e5, epochs=9, evaluations=90)
+    failed = Plan(PlanStatus.NOT_FOUND, first[:0], 0.0, 3, 1e5, epochs=9, evaluations=90)
     better = Plan(PlanStatus.FOUND, second, 3.5, epochs=2, evaluations=30)
     explore, replan, back = Mode.EXPLORE, Mode.REPLAN, Mode.RETURN
     trail = [tuple(place) for place in first[:3].tolist()]

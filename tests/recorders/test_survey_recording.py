@@ -18,7 +18,7 @@ from gapath.recorders.mcap.cdr import record
 from gapath.recorders.mcap.messages import event
 from gapath.runs.config import Run
 from gapath.runs.experiment import execute
-from gapath.tasks.plan import PlanTask
+from gapath.tasks.plan import Task as PlanTask
 
 
 @pytest.fixture(autouse=True)

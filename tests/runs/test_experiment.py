@@ -13,14 +13,17 @@ import pytest
 from gapath.commands import log as log_cli
 from gapath.components import build
 from gapath.discovery import yaml_values
+from gapath.events import TrialFinished
 from gapath.mapio.reconstructed import Reader, generate
 from gapath.planning.shortest_path import shortest_path
 from gapath.problem import Problem
 from gapath.recorders.mcap import read_events
 from gapath.runs import config
 from gapath.runs.experiment import execute, replay_events
-from gapath.store import runfolder
-from gapath.tasks.plan import PlanTask
+from gapath.runs.naming import Method
+from gapath.store import keys, records, runfolder
+from gapath.store.settings import flatten
+from gapath.tasks.plan import Task as PlanTask
 
 
 def make_run(folder, planner="ga3", map_class="kg18_test2", trials=3, recorders=("mcap",)):
@@ -28,13 +31,13 @@ def make_run(folder, planner="ga3", map_class="kg18_test2", trials=3, recorders=
     settings = yaml_values("planner", planner)
     return config.Run(
         "test",
-        planner,
+        Method(planner),
         Problem(grid, grid.start, grid.target),
         PlanTask(build("planner", settings, "planner")),
         [build("recorder", yaml_values("recorder", name), name) for name in recorders],
         11,
         trials,
-        f"task: plan\nplanner: {json.dumps(settings)}\n",
+        flatten({"task": "plan", "planner": settings}),
         str(folder),
         False,
     )
@@ -55,13 +58,15 @@ def test_rows_and_log_agree(tmp_path):
     optimum = shortest_path(run.problem).cost
     outcome = execute(run, "test")
     rows = pq.read_table(outcome.folder / "trials.parquet").to_pylist()
-    finished = [e for e in read_events(outcome.folder / "run.mcap") if hasattr(e, "status")]
+    finished = [e for e in read_events(outcome.folder / "run.mcap") if isinstance(e, TrialFinished)]
     assert len(rows) == len(finished) == 20
     assert {row["status"] for row in rows} == {"found", "not_found"}
     for row, event in zip(rows, finished, strict=True):
-        assert (row["status"], row["cost"]) == (event.status.name.lower(), event.cost)
-        assert (row["epochs"], row["evaluations"]) == (event.epochs, event.evaluations)
-        assert row["feasible"] == (len(event.path) > 0)
+        answer = event.answer
+        assert (row["status"], row["cost"]) == (answer.status.name.lower(), answer.cost)
+        assert (row["epochs"], row["evaluations"]) == (answer.epochs, answer.evaluations)
+        assert row["feasible"] == (len(answer.path) > 0) == (row["obstacles"] == 0)
+        assert row["obstacles"] == answer.obstacles
         assert row["optimal_cost"] == optimum
         if row["feasible"]:
             assert row["optimality_ratio"] == pytest.approx(row["cost"] / optimum)
@@ -70,26 +75,29 @@ def test_rows_and_log_agree(tmp_path):
 def test_other_settings_maps_and_code_are_other_runs(monkeypatch):
     grid, other = generate("kg18_test1", 0), generate("kg18_test1", 1)
     problem = Problem(grid, grid.start, grid.target)
-    keys = {
-        runfolder.run_key("a: 1", "ga1", problem),
-        runfolder.run_key("a: 2", "ga1", problem),
-        runfolder.run_key("a: 1", "ga2", problem),
-        runfolder.run_key("a: 1", "ga1", Problem(other, grid.start, grid.target)),
-        runfolder.run_key("a: 1", "ga1", Problem(grid, grid.start, (97, 24))),
+    found = {
+        keys.run_key({"a": 1}, "ga1", problem),
+        keys.run_key({"a": 2}, "ga1", problem),
+        keys.run_key({"a": 1}, "ga2", problem),
+        keys.run_key({"a": 1}, "ga1", Problem(other, grid.start, grid.target)),
+        keys.run_key({"a": 1}, "ga1", Problem(grid, grid.start, (97, 24))),
     }
-    monkeypatch.setattr(runfolder, "code_hash", lambda: "other")
-    keys.add(runfolder.run_key("a: 1", "ga1", problem))
-    assert len(keys) == 6
+    monkeypatch.setattr(keys, "code_hash", lambda: "other")
+    found.add(keys.run_key({"a": 1}, "ga1", problem))
+    assert len(found) == 6
 
 
 def test_the_same_setting_with_other_code_or_more_trials_is_the_same_setting(monkeypatch):
     grid = generate("kg18_test1", 0)
     problem = Problem(grid, grid.start, grid.target)
-    settings = "seed: 1\ntrials: {}\nrecorder: {}\n"
-    few = runfolder.setting_hash(settings.format(3, "mcap"), "ga1", problem)
-    monkeypatch.setattr(runfolder, "code_hash", lambda: "other")
-    assert runfolder.setting_hash(settings.format(9, "none"), "ga1", problem) == few
-    assert runfolder.setting_hash("seed: 2\n", "ga1", problem) != few
+
+    def settings(trials, recorder):
+        return flatten({"seed": 1, "trials": trials, "recorder": {recorder: {"kind": recorder}}})
+
+    few = keys.setting_hash(settings(3, "mcap"), "ga1", problem)
+    monkeypatch.setattr(keys, "code_hash", lambda: "other")
+    assert keys.setting_hash(settings(9, "none"), "ga1", problem) == few
+    assert keys.setting_hash({"seed": 2}, "ga1", problem) != few
 
 
 def test_a_killed_run_leaves_nothing_that_looks_whole(tmp_path):
@@ -115,7 +123,7 @@ def test_a_killed_run_leaves_nothing_that_looks_whole(tmp_path):
     assert not (folder / "run.mcap").exists()
     assert not (folder / "manifest.json").exists()
     with runfolder.RunFolder(folder).lock():  # nobody holds it: the run is dead
-        assert not runfolder.RunFolder(folder).is_whole()
+        assert not records.is_whole(runfolder.RunFolder(folder))
     saved = tmp_path / "saved.mcap"
     assert log_cli.main(["salvage", str(folder / "run.mcap.part"), "-o", str(saved)]) == 0
     assert sum(1 for _ in read_events(saved)) > 3

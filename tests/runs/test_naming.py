@@ -4,7 +4,8 @@ import pytest
 
 from gapath.components import build
 from gapath.discovery import yaml_values
-from gapath.runs.naming import map_name, method_name
+from gapath.runs.naming import map_name, method_of
+from gapath.tasks import drive
 
 
 @pytest.mark.parametrize(
@@ -49,7 +50,8 @@ def test_drawn_maps_that_differ_are_called_otherwise(yaml, values, expected):
 def test_what_is_known_beforehand_is_named_by_its_folder():
     drive = {"known_map": "office_without_rooms/map.yaml"}
     config = {"task": "drive", "navigator": yaml_values("navigator", "kg18"), "drive": drive}
-    name = method_name(config | {"corner_cutting": "allow"}, {"navigator": "kg18"})
+    method = method_of(drive.Task, config | {"corner_cutting": "allow"}, {"navigator": "kg18"})
+    name = method.name
     assert name == "kg18[known_map=office_without_rooms]"
 
 
@@ -65,4 +67,5 @@ def test_what_is_known_beforehand_is_named_by_its_folder():
 def test_a_list_that_is_shorter_is_another(sides, expected):
     navigator = yaml_values("navigator", "sedighi") | {"subsections": sides}
     config = {"task": "drive", "navigator": navigator, "drive": {"known_map": None}}
-    assert method_name(config | {"corner_cutting": "allow"}, {"navigator": "sedighi"}) == expected
+    config |= {"corner_cutting": "allow"}
+    assert method_of(drive.Task, config, {"navigator": "sedighi"}).name == expected

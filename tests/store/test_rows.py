@@ -4,7 +4,7 @@ import io
 import math
 import subprocess
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import pyarrow.parquet as pq
 from hypothesis import given
@@ -22,6 +22,8 @@ class Row:
     value: float
 
 
+COLUMNS = {field.name: field.type for field in fields(Row)}
+
 rows = st.builds(
     Row,
     st.text(st.characters(exclude_categories=["Cs"])),
@@ -34,14 +36,14 @@ rows = st.builds(
 
 @given(st.lists(rows, min_size=1, max_size=30))
 def test_rows_come_back(drawn):
-    table = pq.read_table(io.BytesIO(parquet(Row, drawn)))
+    table = pq.read_table(io.BytesIO(parquet(COLUMNS, [row.__dict__ for row in drawn])))
     assert table.to_pylist() == [row.__dict__ for row in drawn]
     names = [str(field.type) for field in table.schema]
     assert names == ["string", "uint64", "int64", "bool", "double"]
 
 
 def test_nan_comes_back():
-    table = pq.read_table(io.BytesIO(parquet(Row, [Row("", 0, 0, True, math.nan)])))
+    table = pq.read_table(io.BytesIO(parquet(COLUMNS, [Row("", 0, 0, True, math.nan).__dict__])))
     assert math.isnan(table.column("value")[0].as_py())
 
 

@@ -18,7 +18,7 @@ from gapath.kernels.m22.graph import BLOCKED
 from gapath.kernels.rng import stream
 from gapath.kernels.units import SCALE
 from gapath.mapio import scene
-from gapath.planning.metrics import line_length
+from gapath.planning.path import polyline_length
 from gapath.planning.stages import Stages
 from gapath.problem import CornerCutting, PlanStatus, Problem
 from gapath.survey.keypoints import axis_ends, label
@@ -197,9 +197,9 @@ def test_without_diagonals_only_straight_lines_along_the_axes(resize):
 
 def test_lines_have_a_length():
     points = np.array([[0, 0], [3, 4], [3, 4], [3, 0]], dtype=np.int32)
-    assert line_length(points) == 9.0
-    assert line_length(points[:1]) == line_length(points[:0]) == 0.0
-    assert line_length(np.array([[0, 0], [-65536, 65536]], dtype=np.int32)) == 65536 * 2**0.5
+    assert polyline_length(points) == 9.0
+    assert polyline_length(points[:1]) == polyline_length(points[:0]) == 0.0
+    assert polyline_length(np.array([[0, 0], [-65536, 65536]], dtype=np.int32)) == 65536 * 2**0.5
 
 
 @pytest.mark.parametrize(
