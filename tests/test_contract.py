@@ -5,11 +5,12 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
+import yaml
 
 from gapath import components, discovery
-from gapath.discovery import yaml_values
+from gapath.discovery import kinds, yaml_names, yaml_values
 from gapath.errors import InputError
-from gapath.events import Recorder, RunFinished
+from gapath.events import Recorder, RunFinished, TrialStarted
 from gapath.grid import GridMap
 from gapath.kernels import rng
 from gapath.planning.flaw import flaw
@@ -21,16 +22,11 @@ from gapath.runs import config
 from gapath.runs.experiment import execute, run_started
 from gapath.runs.naming import Method
 from gapath.store.settings import flatten
+from gapath.task import Batch, Task, columns, find_task
 from gapath.tasks.plan import Task as PlanTask
 from gapath.tasks.plan import trial_events
 
-
-def yamls(group):
-    folder = files("gapath.conf") / group
-    return sorted(path.name[:-5] for path in folder.iterdir() if path.name.endswith(".yaml"))
-
-
-PLANNERS, RECORDERS, MAPS = yamls("planner"), yamls("recorder"), yamls("map")
+PLANNERS, RECORDERS, MAPS = map(yaml_names, ("planner", "recorder", "map"))
 
 
 def make_planner(name, **values) -> Planner:
@@ -46,13 +42,13 @@ def make_problem(rule=CornerCutting.ALLOW):
 
 @pytest.mark.parametrize("group", sorted(discovery.OFFERS.keys() - {"task"}))
 def test_every_module_has_a_yaml_and_every_yaml_a_module(group):
-    named = {yaml_values(group, name)["kind"] for name in yamls(group)}
+    named = {yaml_values(group, name)["kind"] for name in yaml_names(group)}
     assert named == set(discovery.kinds(group))
 
 
 @pytest.mark.parametrize("group", sorted(discovery.OFFERS.keys() - {"task"}))
 def test_every_value_of_a_yaml_is_a_field_without_default(group):
-    for name in yamls(group):
+    for name in yaml_names(group):
         values = yaml_values(group, name)
         target = discovery.load(group, values.pop("kind"))
         wanted = inspect.signature(target).parameters
@@ -77,6 +73,37 @@ def test_planners_give_paths_that_are_paths(name, rule):
         else:
             assert plan.status in (PlanStatus.NOT_FOUND, PlanStatus.INFEASIBLE)
             assert not len(plan.path)
+
+
+def check_finds(planner):
+    """Raise AssertionError unless a planner finds a path on a map without an obstacle."""
+    grid = GridMap("empty", np.full((24, 24), 0.5))
+    problem = Problem(grid, (2, 2), (21, 21))
+    assert any(planner.plan(problem, rng.stream(3, trial)).feasible for trial in range(20))
+
+
+@pytest.mark.parametrize("name", PLANNERS)
+def test_planners_find_a_path_where_nothing_is_in_the_way(name):
+    check_finds(make_planner(name))
+
+
+@pytest.mark.parametrize("name", PLANNERS)
+def test_exact_planners_find_every_path(name):
+    planner = make_planner(name)
+    for rule in CornerCutting:
+        plan = planner.plan(make_problem(rule), rng.stream(0))
+        assert plan.feasible or not planner.exact
+
+
+def test_a_planner_that_gives_up_breaks_the_contract():
+    class Quitter:
+        exact = False
+
+        def plan(self, problem, stream):
+            return Plan(PlanStatus.NOT_FOUND)
+
+    with pytest.raises(AssertionError):
+        check_finds(Quitter())
 
 
 @pytest.mark.parametrize("name", PLANNERS)
@@ -187,3 +214,34 @@ def test_map_readers_read_or_say_what_is_missing(name):
         grid = components.build("map", values, "map").read()
         assert isinstance(grid, GridMap)
         Problem(grid, grid.start, grid.target)
+
+
+@pytest.mark.parametrize("name", kinds("task"))
+def test_tasks_say_what_they_are_and_tell_what_they_say(name):
+    task = find_task(name)
+    assert isinstance(task, Task)
+    assert task.name == name
+    assert columns(task.row)[task.groups[0]] is str
+    assert columns(task.row)[task.success] is bool
+    plain = yaml.safe_load((files("gapath.conf") / "config.yaml").read_text("utf-8"))
+    method = yaml_values(task.groups[0], MADE_WITH[task.groups[0]])
+    made = task.make({group: plain.get(group, method) for group in task.groups})
+    problem = make_problem()
+    made.check(problem)
+    optimum = made.optimum(problem)
+    trials = list(made.trials(Batch("contract", "any", problem, 3, 2), optimum))
+    assert [trial.row.trial for trial in trials] == [0, 1]
+    step = 0
+    for trial in trials:
+        told = list(trial.events(step))
+        assert {type(event) for event in told} <= set(task.events)
+        assert isinstance(told[0], TrialStarted) and told[0].step == step
+        assert told[-1].step == step + trial.steps - 1
+        assert trial.row.values().keys() == columns(task.row).keys()
+        assert trial.row.values()[task.success] == trial.found
+        step += trial.steps
+    rows = [trial.row for trial in trials]
+    assert made.summary(rows) and made.summary(rows[:1]) and made.line(rows)
+
+
+MADE_WITH = {"planner": "ga1", "navigator": "replan_astar"}

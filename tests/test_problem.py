@@ -36,7 +36,7 @@ def test_ends_may_be_lists_or_numpy_integers():
 
 
 def test_a_plan_shows_itself_in_a_notebook():
-    html = Plan(PlanStatus.NOT_FOUND, cost=200_012.5, epochs=500)._repr_html_()
+    html = Plan(PlanStatus.NOT_FOUND, weights=12.5, obstacles=2, vln=1e5, epochs=500)._repr_html_()
     assert "without a feasible path" in html
     assert "200012" in html or "200013" in html
 

@@ -25,7 +25,7 @@ from benchmarks.measure import Calls, Row, interleave, make_problem, quartiles, 
 from gapath.components import build
 from gapath.discovery import yaml_values
 from gapath.driving.drive import Drive, Sensor, drive
-from gapath.driving.navigation import Query
+from gapath.driving.navigation import Situation
 from gapath.driving.told import drive_events
 from gapath.events import Outcome
 from gapath.kernels.rng import Stream
@@ -48,7 +48,7 @@ class Clock:
     planner: Planner
     seconds: float = 0.0
 
-    def plan(self, query: Query, stream: Stream) -> Plan:
+    def plan(self, query: Situation, stream: Stream) -> Plan:
         """Plan as the planner does."""
         begin = time.perf_counter()
         plan = self.planner.plan(query, stream)

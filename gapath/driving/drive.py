@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.driving.known_map import KnownMap, Looks
-from gapath.driving.navigation import Decision, Following, Navigator, Query
+from gapath.driving.navigation import Decision, Following, Navigator, Situation
 from gapath.driving.world import Changes, World
 from gapath.errors import require
 from gapath.events import Mode, Outcome
@@ -170,7 +170,7 @@ def drive(
 
     begin = last = time.perf_counter()
     looks = known.look(world.table, place, heading, *sees)
-    query = Query(known, start, target, problem.corner_cutting)
+    query = Situation(known, start, target, problem.corner_cutting)
     state = navigator.begin(query)
     now = time.perf_counter()
     if before is not None:  # the first leg tells all that is known
@@ -217,7 +217,7 @@ def drive(
         state = decision.moved if passed else decision.stood
         if passed:
             place = passed[-1]
-            query = Query(known, place, target, problem.corner_cutting)
+            query = Situation(known, place, target, problem.corner_cutting)
         if len(passed) > 1:
             state = cast(Following, state).further(passed[1:])
         step += len(ahead)

@@ -19,7 +19,7 @@ StreamOf = Callable[[int, int], Stream]
 """The random stream of one call within a step: (part, index) -> stream."""
 
 
-class Query(NamedTuple):
+class Situation(NamedTuple):
     """What a navigator asks a planner: from the robot's field, on what it knows."""
 
     map: KnownMap
@@ -82,12 +82,12 @@ class Navigator(Protocol):
     def complete(self) -> bool:
         """True if it reaches every target that can be reached on a map that does not change."""
 
-    def begin(self, query: Query) -> object:
+    def begin(self, query: Situation) -> object:
         """Give the state before the first step.
 
         Parameters
         ----------
-        query : Query
+        query : Situation
             Start, target and what is known before the first look.
 
         Returns
@@ -97,7 +97,7 @@ class Navigator(Protocol):
         """
 
     def step(
-        self, state: object, query: Query, news: NDArray[np.int64], streams: StreamOf
+        self, state: object, query: Situation, news: NDArray[np.int64], streams: StreamOf
     ) -> Decision:
         """Decide what to do next.
 
@@ -105,7 +105,7 @@ class Navigator(Protocol):
         ----------
         state : object
             As the step before left it.
-        query : Query
+        query : Situation
             The robot's field, the target, and what is known now.
         news : (n,) int64
             Flat indices of the fields of the known map that changed since the last decision.

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.driving.navigation import Call, Decision, Query, StreamOf
+from gapath.driving.navigation import Call, Decision, Situation, StreamOf
 from gapath.driving.past_path import Track
 from gapath.errors import require
 from gapath.grid import Field
@@ -24,11 +24,11 @@ class Repair:
 
     Parameters
     ----------
-    query : Query
+    query : Situation
         The first field, the target, and what is known before the first repair.
     """
 
-    def __init__(self, query: Query) -> None:
+    def __init__(self, query: Situation) -> None:
         known = query.map
         count = known.rows * known.cols
         require(
@@ -52,21 +52,21 @@ class Repair:
         light = int(known.table[query.start[1], query.start[0]])
         self._heuristic = Heuristic(query.start, self._least(query), query.start, light, 0)
 
-    def _least(self, query: Query) -> int:
+    def _least(self, query: Situation) -> int:
         return query.map.least_weight(self._began, query.target)
 
-    def changed(self, query: Query, news: NDArray[np.int64]) -> NDArray[np.int64]:
+    def changed(self, query: Situation, news: NDArray[np.int64]) -> NDArray[np.int64]:
         """Give those of the news that differ from what the search knows."""
         known, own = query.map.table.ravel(), self._search.table.ravel()
         changed: NDArray[np.int64] = news[known[news] != own[news]]
         return changed
 
-    def plan(self, query: Query, changed: NDArray[np.int64]) -> Plan:
+    def plan(self, query: Situation, changed: NDArray[np.int64]) -> Plan:
         """Give a cheapest path from the robot's field.
 
         Parameters
         ----------
-        query : Query
+        query : Situation
             The robot's field, and what is known now.
         changed : (n,) int64
             Flat indices of the fields that changed since the last call.
@@ -101,12 +101,12 @@ class Navigator:
 
     complete = True
 
-    def begin(self, query: Query) -> Track:
+    def begin(self, query: Situation) -> Track:
         """Begin a search without a path."""
         return Track((query.start,), memory=Repair(query))
 
     def step(
-        self, state: Track, query: Query, news: NDArray[np.int64], streams: StreamOf
+        self, state: Track, query: Situation, news: NDArray[np.int64], streams: StreamOf
     ) -> Decision:
         """Go on along the path; repair it if the map changed, and without one go back a field."""
         changed = state.memory.changed(query, news)

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.driving.navigation import Call, Decision, Path, Query, StreamOf
+from gapath.driving.navigation import Call, Decision, Path, Situation, StreamOf
 from gapath.driving.past_path import simplified
 from gapath.errors import require
 from gapath.events import Mode
@@ -112,12 +112,12 @@ class Navigator:
         """Only with an exact planner last in part C; a genetic algorithm may miss."""
         return bool(self.replan[-1].exact)
 
-    def begin(self, query: Query) -> State:
+    def begin(self, query: Situation) -> State:
         """Begin without a path, so that the first one comes from part C."""
         return State(Mode.EXPLORE, None, 0, (query.start,))
 
     def step(
-        self, state: State, query: Query, news: NDArray[np.int64], streams: StreamOf
+        self, state: State, query: Situation, news: NDArray[np.int64], streams: StreamOf
     ) -> Decision:
         """KG18 Fig. 11."""
         if state.mode is Mode.RETURN:
@@ -129,7 +129,7 @@ class Navigator:
         return self._part_c(state, query, streams)
 
     def _part_a(
-        self, state: State, query: Query, streams: StreamOf, calls: tuple[Call, ...] = ()
+        self, state: State, query: Situation, streams: StreamOf, calls: tuple[Call, ...] = ()
     ) -> Decision:
         """KG18 Fig. 12: go back, and on every second or third field look for a path."""
         if state.passed >= state.due:
@@ -146,7 +146,7 @@ class Navigator:
         )
         return Decision(state.past[-2], Mode.RETURN, moved, stood, calls, None, state.past)
 
-    def _part_b(self, state: State, query: Query, rest: int, streams: StreamOf) -> Decision:
+    def _part_b(self, state: State, query: Situation, rest: int, streams: StreamOf) -> Decision:
         """KG18 Fig. 13: go on; every few fields look for a better path."""
         path = state.path
         assert path is not None
@@ -160,7 +160,7 @@ class Navigator:
                 return self._follow(state, plan.path, Mode.EXPLORE, calls)
         return self._advance(state, Mode.EXPLORE, calls)
 
-    def _part_c(self, state: State, query: Query, streams: StreamOf) -> Decision:
+    def _part_c(self, state: State, query: Situation, streams: StreamOf) -> Decision:
         """KG18 Fig. 14: look for a new path, thoroughly; without one go back."""
         calls: tuple[Call, ...] = ()
         for i, planner in enumerate(self.replan):
@@ -194,7 +194,7 @@ class Navigator:
         fill(streams(DRAW, 0), word)
         return least + int(high(word[0], most - least + 1))
 
-    def _lower_bound(self, query: Query) -> int:
+    def _lower_bound(self, query: Situation) -> int:
         """Give what no path can undercut, so that B need not look: exact, saves most calls."""
         (x, y), (u, v) = query.start, query.target
         distance = max(abs(u - x), abs(v - y))
@@ -202,7 +202,7 @@ class Navigator:
         table = query.map.table
         return int(table[y, x]) + least * (distance - 1) + int(table[v, u])
 
-    def _penalised(self, state: State, query: Query) -> Query:
+    def _penalised(self, state: State, query: Situation) -> Situation:
         if not self.return_penalty or not state.walked_back:
             return query
         return query._replace(map=query.map.dearer(state.walked_back, self.return_penalty))

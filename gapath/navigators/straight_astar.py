@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.driving.navigation import Call, Decision, Query, StreamOf
+from gapath.driving.navigation import Call, Decision, Situation, StreamOf
 from gapath.driving.past_path import Track
 from gapath.kernels.field_of_view import remaining_cost
 from gapath.kernels.lines import ONE_OBSTACLE, line_key
@@ -28,12 +28,12 @@ class Navigator:
 
     complete = True
 
-    def begin(self, query: Query) -> Track:
+    def begin(self, query: Situation) -> Track:
         """Begin without a path."""
         return Track((query.start,), memory=False)
 
     def step(
-        self, state: Track, query: Query, news: NDArray[np.int64], streams: StreamOf
+        self, state: Track, query: Situation, news: NDArray[np.int64], streams: StreamOf
     ) -> Decision:
         """Go straight on if possible, else along A*'s path, else back a field."""
         table, rule = query.map.table, int(query.corner_cutting)

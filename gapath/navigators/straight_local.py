@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.driving.navigation import Call, Decision, Path, Query, StreamOf
+from gapath.driving.navigation import Call, Decision, Path, Situation, StreamOf
 from gapath.driving.past_path import Track
 from gapath.errors import require
 from gapath.grid import Field, Table
@@ -101,12 +101,12 @@ class Navigator:
         interval = self.retreat_interval
         require(interval >= 1, "navigator.retreat_interval", interval, "an integer from 1 on")
 
-    def begin(self, query: Query) -> Track:
+    def begin(self, query: Situation) -> Track:
         """Begin without a path."""
         return Track((query.start,), memory=Memory())
 
     def step(
-        self, state: Track, query: Query, news: NDArray[np.int64], streams: StreamOf
+        self, state: Track, query: Situation, news: NDArray[np.int64], streams: StreamOf
     ) -> Decision:
         """Go on if the path is free, else straight on or around what is in the way, else back."""
         table, rule = query.map.table, int(query.corner_cutting)
@@ -175,13 +175,13 @@ class Around(NamedTuple):
 
 
 def subsections(
-    query: Query, line: Path, blocked: NDArray[np.bool_], sides: list[int]
+    query: Situation, line: Path, blocked: NDArray[np.bool_], sides: list[int]
 ) -> Iterator[Around]:
     """Give squares around what is in the way.
 
     Parameters
     ----------
-    query : Query
+    query : Situation
         The robot's field and what it knows.
     line : (n, 2) int32
         The staircase to the target.
@@ -205,7 +205,7 @@ def subsections(
             yield _around(query, line[reached[-1]], side)
 
 
-def _around(query: Query, sub_target: NDArray[np.int32], side: int) -> Around:
+def _around(query: Situation, sub_target: NDArray[np.int32], side: int) -> Around:
     """Cut the square out of the known map that has both fields in its middle."""
     start, target = np.array(query.start), sub_target.astype(np.int64)
     low = np.minimum(start, target)

@@ -60,7 +60,7 @@ def test_a_run_that_another_process_holds_is_left_alone(gapath, tmp_path):
 
 def test_a_sweep_does_every_setting_and_goes_on_after_a_failure(gapath, tmp_path, monkeypatch):
     def fail(run, command):
-        if run.method == "ga1[population=8]":
+        if run.method.name == "ga1[population=8]":
             raise RuntimeError("no luck")
         return execute(run, command)
 
@@ -103,7 +103,7 @@ def test_the_same_file_with_other_settings_is_another_map(gapath, tmp_path):
 
 
 def test_a_failing_run_says_so_in_its_folder(gapath, tmp_path, monkeypatch):
-    monkeypatch.setattr("gapath.tasks.plan.clearances", lambda grid: 1 / 0)
+    monkeypatch.setattr("gapath.tasks.plan.plan_trials", lambda *given: 1 / 0)
     code, _, errors = gapath("map=kg18_test1")
     assert code == 1
     assert "ZeroDivisionError" in errors
@@ -116,7 +116,7 @@ def test_an_interrupted_run_says_so(gapath, tmp_path, monkeypatch):
     def interrupt(*arguments):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("gapath.tasks.plan.clearances", interrupt)
+    monkeypatch.setattr("gapath.tasks.plan.plan_trials", interrupt)
     assert gapath("map=kg18_test1")[0] == cli.INTERRUPTED
     folder = only(tmp_path / "out" / "plan")
     assert json.loads((folder / "status.json").read_bytes())["state"] == "interrupted"
@@ -244,7 +244,7 @@ def test_a_forced_run_that_fails_keeps_what_was_there(gapath, tmp_path, monkeypa
     gapath(*run)
     folder = only(tmp_path / "out" / "plan")
     before = (folder / "trials.parquet").read_bytes()
-    monkeypatch.setattr("gapath.tasks.plan.clearances", lambda grid: 1 / 0)
+    monkeypatch.setattr("gapath.tasks.plan.plan_trials", lambda *given: 1 / 0)
     assert gapath(*run, "force=true")[0] == 1
     assert (folder / "trials.parquet").read_bytes() == before
 

@@ -3,6 +3,7 @@
 import dataclasses
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -22,7 +23,7 @@ from gapath.events import (
     TrialStarted,
 )
 from gapath.grid import GridMap
-from gapath.problem import Evolution, PlanStatus, Problem
+from gapath.problem import Answer, Evolution, PlanStatus, Problem
 from gapath.recorders import mcap
 
 
@@ -31,7 +32,7 @@ def run_events(trials=30):
     grid = GridMap("leer", np.full((4, 6), 0.5), resolution=0.1)
     path = np.array([[0, 0], [1, 1], [2, 1]], dtype=np.int32)
     yield RunStarted(
-        "table1", "ga3", "plan", Problem(grid, (0, 0), (2, 1)), 7, trials, "seed: 7\n",
+        "table1", "ga3", "plan", Problem(grid, (0, 0), (2, 1)), 7, trials, {"seed": 7},
         {"gapath": "0.1.0"}, path, 1.5,
     )  # fmt: skip
     for trial in range(trials):
@@ -42,7 +43,7 @@ def run_events(trials=30):
         yield Evolved(step, trial, 0, Evolution(best, best, genes, points, "control_points"))
         status = PlanStatus.NOT_FOUND if trial % 3 == 2 else PlanStatus.FOUND
         walked = path if status is PlanStatus.FOUND else path[:0]
-        yield TrialFinished(step + 2, trial, status, 1.5, 2, 60, 0, walked)
+        yield TrialFinished(step + 2, trial, Answer(status, walked, 1.5, 0, 0.0, 2, 60))
     yield RunFinished(2 * trials, trials, 2 * trials // 3)
 
 
@@ -50,7 +51,7 @@ def drive_events(seconds=1e-4):
     """Give the events of two drives on an empty map; the second one overruns."""
     grid = GridMap("leer", np.full((4, 6), 0.5))
     path = np.array([[0, 0], [1, 1]], dtype=np.int32)
-    settings = "task: drive\ndrive:\n  sensor: {range: 1}\n  unknown_weight: 0.5\n"
+    settings = {"task": "drive", "drive.sensor.range": 1, "drive.unknown_weight": 0.5}
     yield RunStarted(
         "drives", "kg18", "drive", Problem(grid, (0, 0), (1, 1)), 7, 2, settings,
         {"gapath": "0.1.0"}, path, 1.0,
@@ -193,7 +194,9 @@ def test_verify_of_an_interrupted_run_compares_what_is_there(cut, replay, capsys
 def changed(number, **fields):
     def events():
         for index, event in enumerate(run_events()):
-            yield dataclasses.replace(event, **fields) if index == number else event
+            if index == number:
+                event = dataclasses.replace(event, answer=replace(event.answer, **fields))
+            yield event
 
     return events
 
@@ -210,13 +213,19 @@ def other_gene():
 
 
 DIFFERENCES = {
-    "cost": (changed(3, cost=2.5), "trial 0, step 2, TrialFinished.cost: 1.5 in the log, 2.5 now"),
+    "cost": (
+        changed(3, weights=2.5),
+        "trial 0, step 2, TrialFinished.answer.weights: 1.5 in the log, 2.5 now",
+    ),
     "gene": (other_gene, "trial 4, step 8, Evolved.evolution.chromosomes[1, 2]: 0 in the log, 9"),
     "path": (
         changed(3, path=np.zeros((1, 2), dtype=np.int32)),
-        "TrialFinished.path: shape (3, 2) in the log, (1, 2) now",
+        "TrialFinished.answer.path: shape (3, 2) in the log, (1, 2) now",
     ),
-    "status": (changed(3, status=PlanStatus.INFEASIBLE), "TrialFinished.status: <PlanStatus.FOUND"),
+    "status": (
+        changed(3, status=PlanStatus.INFEASIBLE),
+        "answer.status: <PlanStatus.FOUND",
+    ),
     "shorter": (lambda: list(run_events())[:-1], "RunFinished in the log, nothing now"),
     "longer": (lambda: [*run_events(), TrialStarted(99, 30, 7)], "nothing in the log"),
     "kind": (lambda: [next(run_events()), RunFinished(0, 0, 0)], "TrialStarted in the log, RunFin"),

@@ -54,7 +54,7 @@ def test_a_photograph_is_parted_by_otsus_method(gapath, tmp_path, planner):
     assert not load_map(tmp_path / "room.png").obstacles.any()
     *_, finished, _ = mcap.read_events(folder / "run.mcap")
     grown = dilate(light, 4)
-    assert not grown[finished.path[:, 1], finished.path[:, 0]].any()
+    assert not grown[finished.answer.path[:, 1], finished.answer.path[:, 0]].any()
 
 
 def test_without_a_threshold_a_photograph_is_nothing_but_dear_floor(gapath, tmp_path):

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from naive import shortest_cost
 
 from gapath.driving.known_map import KnownMap, _lies_between
-from gapath.driving.navigation import Query
+from gapath.driving.navigation import Situation
 from gapath.grid import GridMap
 from gapath.kernels.units import OBSTACLE, SCALE
 from gapath.planning.shortest_path import shortest_path
@@ -58,7 +58,7 @@ def test_a_light_start_on_the_way_lowers_the_bound():
     known = KnownMap(GridMap("light", values), (4, 1), (8, 1), UNKNOWN)
     assert known.least_weight((4, 1), (8, 1)) == SCALE // 2
     assert known.least_weight((0, 1), (8, 1)) == 0
-    assert shortest_path(Query(known, (0, 1), (8, 1), 0)).cost == 8 * 0.5
+    assert shortest_path(Situation(known, (0, 1), (8, 1), 0)).cost == 8 * 0.5
 
 
 def test_what_is_known_before_the_drive():

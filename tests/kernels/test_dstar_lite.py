@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strategies import problems
 
-from gapath.driving.navigation import Query
+from gapath.driving.navigation import Situation
 from gapath.errors import InputError
 from gapath.grid import GridMap
 from gapath.navigators.dstar_lite import Repair
@@ -58,7 +58,7 @@ def check(repair, now, query, rule, changed):
 @given(problems(most=14), st.data())
 def test_costs_equal_astar_after_every_change(problem, data):
     now = Changing(problem)
-    query = Query(now, problem.start, problem.target, problem.corner_cutting)
+    query = Situation(now, problem.start, problem.target, problem.corner_cutting)
     repair = Repair(query)
     places = st.tuples(st.integers(0, now.cols - 1), st.integers(0, now.rows - 1))
     plan = check(repair, now, query, problem.corner_cutting, np.empty(0, dtype=np.int64))
@@ -84,7 +84,7 @@ def test_costs_equal_astar_on_a_long_way(seed):
     values[2, 16] = random.choice([0.0, 0.5])  # a light start that may lie on the way
     problem = Problem(GridMap("long", values), (16, 2), (30, 20))
     now = Changing(problem)
-    query = Query(now, problem.start, problem.target, problem.corner_cutting)
+    query = Situation(now, problem.start, problem.target, problem.corner_cutting)
     repair = Repair(query)
     flat = np.empty(0, dtype=np.int64)
     for step in range(40):
@@ -105,7 +105,7 @@ def test_a_light_lane_far_from_what_was_searched_is_found():
     """Lighter fields than any before make the queued keys too large: they are made anew."""
     problem = Problem(GridMap("lane", np.full((24, 60), 0.5)), (5, 12), (55, 12))
     now = Changing(problem)
-    query = Query(now, problem.start, problem.target, problem.corner_cutting)
+    query = Situation(now, problem.start, problem.target, problem.corner_cutting)
     repair = Repair(query)
     check(repair, now, query, problem.corner_cutting, np.empty(0, dtype=np.int64))
     lane = [(x, 4) for x in range(13, 48)]
@@ -120,7 +120,7 @@ def test_a_repair_is_cheaper_than_a_search():
     values[20:40, 60] = 1.0
     problem = Problem(GridMap("wall", values), (0, 30), (118, 30))
     now = Changing(problem)
-    query = Query(now, problem.start, problem.target, problem.corner_cutting)
+    query = Situation(now, problem.start, problem.target, problem.corner_cutting)
     repair = Repair(query)
     first = repair.plan(query, np.empty(0, dtype=np.int64))
     x, y = map(int, first.path[3])
@@ -132,4 +132,4 @@ def test_a_repair_is_cheaper_than_a_search():
 def test_a_map_too_large_for_its_costs_is_refused():
     grid = SimpleNamespace(rows=2**11, cols=2**10, table=np.zeros((1, 1), dtype=np.int32))
     with pytest.raises(InputError, match="2048 x 1024 fields"):
-        Repair(Query(grid, (0, 0), (1, 1), 0))
+        Repair(Situation(grid, (0, 0), (1, 1), 0))

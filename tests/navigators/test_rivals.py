@@ -7,7 +7,7 @@ from hypothesis import given
 
 from gapath.driving.drive import Sensor, drive
 from gapath.driving.known_map import KnownMap
-from gapath.driving.navigation import Query
+from gapath.driving.navigation import Situation
 from gapath.driving.world import Changes
 from gapath.events import Mode, Outcome
 from gapath.grid import GridMap
@@ -38,7 +38,7 @@ def test_dstar_lite_is_on_a_cheapest_path_in_every_step(problem):
     for frame, following in zip(driven.frames, driven.frames[1:], strict=False):
         known._table.ravel()[frame.news] = frame.entries
         known._least[0] = 0  # the news came by without `look`
-        optimum = shortest_path(Query(known, place, problem.target, problem.corner_cutting))
+        optimum = shortest_path(Situation(known, place, problem.target, problem.corner_cutting))
         path = following.decision.path
         assert (path is not None) == optimum.feasible
         if path is not None:

@@ -14,7 +14,7 @@ from recordings import centres, read, record, rerun_command
 from gapath.events import Called, DriveFinished, Mode, Outcome, PathsChanged, Stepped, TrialStarted
 from gapath.grid import GridMap
 from gapath.kernels.field_of_view import HEADING_X, HEADING_Y, sense
-from gapath.problem import PlanStatus, Problem
+from gapath.problem import Answer, PlanStatus, Problem
 from gapath.recorders.rerun import drive_scene
 
 
@@ -117,7 +117,7 @@ def test_an_answer_is_shown_in_its_step_only(found, events):
     assert (first.part, last.part) == ("C", "A")
     for call in (first, last):
         shown = found[f"/map/calls/{call.part}/adopted", "LineStrips2D:strips"]
-        assert shown == [(call.step, [centres(call.path.tolist())]), (call.step + 1, [])]
+        assert shown == [(call.step, [centres(call.answer.path.tolist())]), (call.step + 1, [])]
     assert not any(entity.endswith("not_adopted") for entity, _ in found)  # none had a path
     texts = [(step, text[0]) for step, text in found["/calls", "TextLog:text"]]
     assert texts == [
@@ -215,7 +215,8 @@ def long_drive(steps=500):
             across = np.arange(x, 100, dtype=np.int32)
             path = np.stack([across, (across * 7 + step) % 50], axis=1).astype(np.int32)
             part, adopted, found = "ABC"[step % 3], step % 8 == 0, PlanStatus.FOUND
-            yield Called(step, 0, part, 0, adopted, found, 40.0, 10, 400, 0, path)
+            answer = Answer(found, path, 40.0, epochs=10, evaluations=400)
+            yield Called(step, 0, part, 0, adopted, answer)
             yield PathsChanged(step, 0, path, path[::-1])
         fields = np.array([[x + i - 3, y + j - 3] for i in range(4) for j in range(4)], np.int32)
         entries = grid.table[fields[:, 1], fields[:, 0]]

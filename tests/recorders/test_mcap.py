@@ -27,7 +27,7 @@ from gapath.events import (
     TrialStarted,
 )
 from gapath.grid import GridMap
-from gapath.problem import CornerCutting, Evolution, Graph, PlanStatus, Problem
+from gapath.problem import Answer, CornerCutting, Evolution, Graph, PlanStatus, Problem
 from gapath.recorders import mcap, none
 from gapath.recorders.mcap import cdr
 from gapath.recorders.mcap import format as log_format
@@ -86,6 +86,17 @@ def graphs(draw):
     return Graph(obstacles, draw(st.integers(1, 2**32 - 1)), points, edges)
 
 
+@st.composite
+def answers(draw):
+    status, numbers = draw(st.sampled_from(PlanStatus)), [draw(counts) for _ in range(4)]
+    weights, vln = draw(st.floats()), draw(st.floats())
+    return Answer(status, draw(paths()), weights, numbers[0], vln, *numbers[1:])
+
+
+NAMES = st.from_regex(r"[a-z_]+(\.[a-z_]+|\[\d\])*", fullmatch=True)
+VALUES = st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text()
+
+
 def drives(draw, grid, step, trial):
     """Give the events of a drive between its start and its end."""
     places = st.tuples(st.integers(0, grid.cols - 1), st.integers(0, grid.rows - 1))
@@ -93,9 +104,7 @@ def drives(draw, grid, step, trial):
     for i in range(draw(st.integers(0, 3))):
         now = step + i
         if draw(st.booleans()):
-            status, adopted = draw(st.sampled_from(PlanStatus)), draw(st.booleans())
-            numbers = draw(st.floats()), draw(counts), 2, 3
-            yield Called(now, trial, draw(part), i, adopted, status, *numbers, draw(paths()))
+            yield Called(now, trial, draw(part), i, draw(st.booleans()), draw(answers()))
         if draw(st.booleans()):
             yield PathsChanged(now, trial, draw(paths()), draw(paths()))
         seen = np.array(draw(st.lists(places, max_size=4)), dtype=np.int32).reshape(-1, 2)
@@ -119,7 +128,7 @@ def runs(draw):
             problem,
             draw(counts),
             draw(counts),
-            draw(st.text()),
+            draw(st.dictionaries(NAMES, VALUES, max_size=3)),
             draw(st.dictionaries(st.text(), st.text(), max_size=3)),
             draw(paths()),
             draw(st.floats()),
@@ -137,8 +146,7 @@ def runs(draw):
             events.append(Surveyed(step, trial, draw(graphs())))
         for call in range(draw(st.integers(0, 2))):
             events.append(Evolved(step, trial, call, draw(evolutions())))
-        status, cost, numbers = draw(st.sampled_from(PlanStatus)), draw(st.floats()), draw(counts)
-        events.append(TrialFinished(step, trial, status, cost, numbers, 2, 3, draw(paths())))
+        events.append(TrialFinished(step, trial, draw(answers())))
     if draw(st.booleans()):
         events.append(RunFinished(draw(steps), draw(counts), draw(counts)))
     return events

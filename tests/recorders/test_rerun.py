@@ -21,7 +21,7 @@ import gapath
 from gapath.errors import InputError
 from gapath.events import Evolved, RunFinished, RunStarted, TrialFinished, TrialStarted
 from gapath.grid import GridMap
-from gapath.problem import Evolution, PlanStatus, Problem
+from gapath.problem import Answer, Evolution, PlanStatus, Problem
 from gapath.recorders.rerun import Recorder
 
 CONF = Path(gapath.__file__).parent.parent / "conf" / "recorder" / "rerun.yaml"
@@ -55,12 +55,12 @@ def run_of(evolutions, trials=1, status=PlanStatus.FOUND, source="reconstructed"
     path = np.array([[x, 2] for x in range(40)], dtype=np.int32)
     run = RunStarted(
         experiment="table1",
-        planner="ga3",
+        method="ga3",
         task="plan",
         problem=Problem(grid, (0, 2), (39, 2)),
         seed=7,
         trials=trials,
-        settings="planner:\n  population: 100\n",
+        settings={"planner.population": 100},
         versions={"gapath": "0.1.0"},
         optimal_path=path,
         optimal_cost=20.0,
@@ -74,7 +74,8 @@ def run_of(evolutions, trials=1, status=PlanStatus.FOUND, source="reconstructed"
             yield Evolved(step, trial, call, one)
             step += len(one.best)
         found = path if status is PlanStatus.FOUND else path[:0]
-        yield TrialFinished(step, trial, status, 21.5, step - began, 3000, 17, found)
+        answer = Answer(status, found, 21.5, 0, 0.0, step - began, 3000, 17)
+        yield TrialFinished(step, trial, answer)
         step += not evolutions
     yield RunFinished(step, trials, trials if status is PlanStatus.FOUND else 0)
 
@@ -135,7 +136,7 @@ def test_every_epoch_reads_back(tmp_path, seed, lengths):
         drawn = 10 ** np.array(column(entity, "Scalars:scalars"))[:, 0]
         np.testing.assert_allclose(drawn, [row[k] for row in rows], rtol=1e-12)
     assert found["/map/final_path", "LineStrips2D:strips"] == [
-        (len(rows), [centres(events[-2].path)])
+        (len(rows), [centres(events[-2].answer.path)])
     ]
 
 

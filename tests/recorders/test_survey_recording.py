@@ -18,6 +18,7 @@ from gapath.recorders.mcap.cdr import record
 from gapath.recorders.mcap.messages import event
 from gapath.runs.config import Run
 from gapath.runs.experiment import execute
+from gapath.runs.naming import Method
 from gapath.tasks.plan import Task as PlanTask
 
 
@@ -38,9 +39,10 @@ def two_blocks():
 def run(planner, folder, trials=2, recorded=(0, 1), problem=None):
     problem = problem or two_blocks()
     recorders = [mcap.Recorder(flush_every=7), rerun.Recorder(trials=list(recorded))]
-    settings = "task: plan\nplanner: {kind: visibility_ga}\n"
+    settings = {"task": "plan", "planner.kind": "visibility_ga"}
+    method = Method("visibility_ga")
     described = Run(
-        "survey", "visibility_ga", problem, PlanTask(planner), recorders, 7, trials, settings,
+        "survey", method, problem, PlanTask(planner), recorders, 7, trials, settings,
         str(folder), False,
     )  # fmt: skip
     return execute(described, "test", progress=False).folder
@@ -134,7 +136,7 @@ def test_a_graph_without_a_way_is_shown(tmp_path):
     folder = run(PLANNERS["ga"], tmp_path, problem=problem)
     events = list(mcap.read_events(folder / "run.mcap"))
     assert [type(event) for event in events[1:4]] == [TrialStarted, Surveyed, TrialFinished]
-    assert events[3].status is PlanStatus.INFEASIBLE
+    assert events[3].answer.status is PlanStatus.INFEASIBLE
     shows_the_graph(read(folder / "trial-1.rrd"), events[2].graph, problem)
     assert (
         "in the graph that the planner made"

@@ -5,7 +5,7 @@ import pytest
 from gapath.components import build
 from gapath.discovery import yaml_values
 from gapath.runs.naming import map_name, method_of
-from gapath.tasks import drive
+from gapath.tasks import drive as driving
 
 
 @pytest.mark.parametrize(
@@ -50,7 +50,7 @@ def test_drawn_maps_that_differ_are_called_otherwise(yaml, values, expected):
 def test_what_is_known_beforehand_is_named_by_its_folder():
     drive = {"known_map": "office_without_rooms/map.yaml"}
     config = {"task": "drive", "navigator": yaml_values("navigator", "kg18"), "drive": drive}
-    method = method_of(drive.Task, config | {"corner_cutting": "allow"}, {"navigator": "kg18"})
+    method = method_of(driving.Task, config | {"corner_cutting": "allow"}, {"navigator": "kg18"})
     name = method.name
     assert name == "kg18[known_map=office_without_rooms]"
 
@@ -68,4 +68,4 @@ def test_a_list_that_is_shorter_is_another(sides, expected):
     navigator = yaml_values("navigator", "sedighi") | {"subsections": sides}
     config = {"task": "drive", "navigator": navigator, "drive": {"known_map": None}}
     config |= {"corner_cutting": "allow"}
-    assert method_of(drive.Task, config, {"navigator": "sedighi"}).name == expected
+    assert method_of(driving.Task, config, {"navigator": "sedighi"}).name == expected

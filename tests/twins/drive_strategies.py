@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from strategies import problems
 
 from gapath.driving.known_map import KnownMap
-from gapath.driving.navigation import Query
+from gapath.driving.navigation import Situation
 from gapath.grid import GridMap
 from gapath.kernels.units import OBSTACLE
 from gapath.problem import CornerCutting, Problem
@@ -26,7 +26,7 @@ def queries(draw, most=16):
     free = np.argwhere(known.table < OBSTACLE)
     v, u = free[draw(st.integers(0, len(free) - 1))]
     place = draw(st.sampled_from([(int(u), int(v)), problem.start]))
-    return problem, Query(known, place, problem.target, problem.corner_cutting)
+    return problem, Situation(known, place, problem.target, problem.corner_cutting)
 
 
 def random_world(seed, rule=CornerCutting.ALLOW):

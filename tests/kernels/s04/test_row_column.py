@@ -28,7 +28,7 @@ from gapath.kernels.s04.genotype import (
     share,
 )
 from gapath.kernels.units import OBSTACLE, SCALE
-from gapath.planning.metrics import path_metrics
+from gapath.planning.path import heading_changes, octile_length, path_weights
 from gapath.problem import Problem
 from gapath.survey.row_column import Frame
 
@@ -144,7 +144,7 @@ def test_paths_and_measures_equal_the_twin(problem, seed, size):
 
 @given(problems(most=9, least=1), st.integers(0, 2**32 - 1))
 def test_measures_are_those_of_the_fields_of_the_path(problem, seed):
-    """Counted as `gapath.planning.metrics` counts, on the map padded to a square."""
+    """Counted as `gapath.planning.path` counts, on the map padded to a square."""
     frame = Frame.of(problem)
     n = frame.side
     weights, _ = twin.mirrored(problem.map.weights, (problem.start, problem.target))
@@ -157,11 +157,10 @@ def test_measures_are_those_of_the_fields_of_the_path(problem, seed):
         assert naive.polyline([tuple(map(int, point)) for point in points]) == [
             tuple(field) for field in fields.tolist()
         ]
-        metrics = path_metrics(padded, fields, np.zeros((n, n)))
-        assert metrics.length == found.lengths[i]
-        assert metrics.turns == found.turns[i]
+        assert octile_length(fields) == found.lengths[i]
+        assert np.count_nonzero(heading_changes(fields)) == found.turns[i]
         obstacles, cost = found.keys[i] >> KEY_BITS, found.keys[i] & (ONE_OBSTACLE - 1)
-        assert metrics.cost * SCALE == obstacles * OBSTACLE + cost
+        assert path_weights(padded, fields) * SCALE == obstacles * OBSTACLE + cost
 
 
 def test_the_longest_path_of_the_largest_map_fits_a_key():

@@ -1,0 +1,74 @@
+"""Every metric by hand, and what all of them must offer; they are found, not listed."""
+
+import inspect
+import math
+from typing import get_type_hints
+
+import numpy as np
+import pytest
+
+from gapath.discovery import kinds, load
+from gapath.grid import GridMap
+from gapath.metrics.clearance import distances
+from gapath.planning.path import path_weights
+from gapath.problem import Plan, PlanStatus, Problem
+from gapath.task import Row, columns, measured
+
+WEIGHTS = np.full((5, 7), 0.5)
+WEIGHTS[2, 3] = 1.0
+GRID = GridMap("hand", WEIGHTS)
+PATH = np.array([(0, 0), (1, 1), (2, 1), (3, 1), (4, 2), (4, 3)], dtype=np.int32)
+
+
+def measure(path, lines=None):
+    """Measure a path, or part of one."""
+    path = np.asarray(path, dtype=np.int32).reshape(-1, 2)
+    status = PlanStatus.FOUND if len(path) else PlanStatus.NOT_FOUND
+    return measured(Problem(GRID, (0, 0), (4, 3)), Plan(status, path, lines=lines))
+
+
+def test_a_path_by_hand():
+    """Two diagonal and three straight steps; SE, E, E, SE, S: three turns of 45 degrees."""
+    found = measure(PATH)
+    assert path_weights(GRID, PATH) == 3.0
+    assert found["length"] == pytest.approx(3 + 2 * math.sqrt(2))
+    assert found["turns"] == 3
+    assert found["clearance"] == 1.0
+    assert found["curvature"] == pytest.approx(3 * math.pi / 4 / (3 + 2 * math.sqrt(2)))
+    assert math.isnan(found["line_length"])
+
+
+def test_straight_lines_are_measured_as_such():
+    ends = np.array([(0, 0), (3, 1), (4, 3)], dtype=np.int32)
+    found = measure(PATH, lambda: ends)
+    assert found["line_length"] == pytest.approx(math.sqrt(10) + math.sqrt(5))
+
+
+def test_turning_back_is_a_half_turn():
+    assert measure([(0, 0), (1, 0), (0, 0)])["curvature"] == math.pi / 2
+
+
+def test_a_path_of_one_field_is_measured():
+    found = measure([(0, 0)])
+    assert (found["length"], found["turns"], found["curvature"]) == (0.0, 0, 0.0)
+
+
+def test_no_path_has_no_metrics():
+    found = measure([])
+    assert found.pop("turns") == 0
+    assert found and all(math.isnan(value) for value in found.values())
+
+
+def test_what_lies_outside_the_map_is_an_obstacle():
+    assert distances(GridMap("empty", np.zeros((5, 5)))).tolist()[2] == [1, 2, 3, 2, 1]
+
+
+@pytest.mark.parametrize("name", kinds("metric"))
+def test_every_metric_says_what_it_is(name):
+    metric = load("metric", name)
+    assert isinstance(metric.TITLE, str) and metric.TITLE
+    assert list(inspect.signature(metric.measure).parameters) == ["problem", "plan"]
+    kind = get_type_hints(metric.measure)["return"]
+    assert kind in (float, int)
+    assert type(measure(PATH, lambda: PATH)[name]) is kind
+    assert columns(Row)[name] is kind

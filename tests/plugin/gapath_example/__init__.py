@@ -1,0 +1,1 @@
+"""A component of each kind for gapath, each in one file."""

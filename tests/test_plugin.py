@@ -1,0 +1,192 @@
+"""A package of one's own, installed: each of its components is found, runs, is logged and reported.
+
+The package is ``tests/plugin``, whose files are the examples of CONTRIBUTING.md.
+"""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+TESTS = Path(__file__).parent
+ROOT = TESTS.parent
+PLUGIN = TESTS / "plugin"
+
+
+def installed(source, site):
+    """Install a package beside the others, for processes that are told where."""
+    source = Path(shutil.copytree(source, site.with_name(f"{site.name}-source")))
+    options = ("--quiet", "--no-index", "--no-deps", "--no-build-isolation", "--target", str(site))
+    pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "install", *options]
+    done = subprocess.run([*pip, str(source)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return site
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    return installed(PLUGIN, tmp_path_factory.mktemp("site") / "packages")
+
+
+def run(site, folder, *command):
+    """Run a command of gapath in a process that has the package."""
+    place = Path(sys.executable).parent / command[0]
+    program = [str(place)] if place.exists() else [sys.executable, "-m", command[0]]
+    done = subprocess.run(
+        [*program, *map(str, command[1:])],
+        env=os.environ | {"PYTHONPATH": str(site)},
+        cwd=folder,
+        capture_output=True,
+        text=True,
+    )
+    return done.returncode, done.stdout, done.stderr
+
+
+def succeed(*command):
+    code, out, errors = run(*command)
+    assert code == 0, errors
+    return out
+
+
+def only(folder):
+    (found,) = folder.iterdir()
+    return found
+
+
+def test_its_planner_runs_is_recorded_and_reproduced(site, tmp_path):
+    command = ("gapath", "map=kg18_test1", "planner=one_bend", "planner.tries=500",
+               "recorder=[mcap,counts]", "trials=4")  # fmt: skip
+    assert "found         4 (100.0 %)" in succeed(site, tmp_path, *command)
+    folder = only(tmp_path / "outputs" / "plan")
+    lines = (folder / "counts.txt").read_text().splitlines()
+    assert lines == ["events", "RunFinished 1", "RunStarted 1", "TrialFinished 4", "TrialStarted 4"]
+    assert "reproduced" in succeed(site, tmp_path, "gapath-log", "verify", folder / "run.mcap")
+    manifest = json.loads((folder / "manifest.json").read_bytes())
+    assert manifest["versions"]["gapath-example"] == "1.2.3"
+    assert manifest["changes"] == {"tries": 500}
+    rows = pd.read_parquet(folder / "trials.parquet")
+    assert (rows["detour"] >= 1).all()
+    assert "planner.tries: 500" in succeed(
+        site, tmp_path, "gapath-log", "info", folder / "run.mcap"
+    )
+
+
+def test_its_planner_its_table_and_its_metric_stand_in_the_report_of_a_sweep(site, tmp_path):
+    sweep = ("gapath", "-m", "name=bends", "map=kg18_test1,kg18_test2", "planner=one_bend",
+             "planner.tries=5,50", "recorder=none", "trials=20")  # fmt: skip
+    assert len(succeed(site, tmp_path, *sweep).splitlines()) == 4
+    succeed(site, tmp_path, "gapath-report", "outputs")
+    report = tmp_path / "outputs" / "report"
+    bends = pd.read_csv(report / "bends.csv")
+    assert bends[["map", "tries", "n"]].to_numpy().tolist() == [
+        [name, tries, 20] for name in ("kg18_test1", "kg18_test2") for tries in (5, 50)
+    ]
+    assert bends["found"].max() > 0
+    metrics = pd.read_csv(report / "metrics_plan.csv")
+    assert metrics["detour_median"].min() >= 1
+    assert "One bend" in (report / "index.html").read_text()
+
+
+def test_its_navigator_drives(site, tmp_path):
+    command = ("gapath", "task=drive", "map=kg18_map1", "navigator=wait_and_see", "recorder=mcap")
+    assert "outcome       reached" in succeed(site, tmp_path, *command)
+    folder = only(tmp_path / "outputs" / "drive")
+    assert pd.read_parquet(folder / "trials.parquet")["stands"].tolist() == [2]
+    assert "reproduced" in succeed(site, tmp_path, "gapath-log", "verify", folder / "run.mcap")
+
+
+def test_its_task_runs_is_logged_recorded_and_reported(site, tmp_path):
+    command = ("gapath", "task=round_trip", "map=kg18_test3", "planner=astar", "trials=2")
+    assert "came back     2" in succeed(site, tmp_path, *command)
+    folder = only(tmp_path / "outputs" / "round_trip")
+    assert "reproduced" in succeed(site, tmp_path, "gapath-log", "verify", folder / "run.mcap")
+    assert "optimal cost, one way" in succeed(
+        site, tmp_path, "gapath-log", "info", folder / "run.mcap"
+    )
+    assert (folder / "trial-0.rrd").stat().st_size > 0
+    succeed(site, tmp_path, "gapath-report", "outputs")
+    overview = pd.read_csv(tmp_path / "outputs" / "report" / "round_trip_overview.csv")
+    assert overview[["map", "planner", "n", "success"]].to_numpy().tolist() == [
+        ["kg18_test3", "astar", 2, 1.0]
+    ]
+    code, _, errors = run(site, tmp_path, "gapath", "task=round_trip", "navigator=kg18")
+    assert code == 2 and "navigator: got task=round_trip" in errors
+
+
+def test_its_map_reader_reads(site, tmp_path):
+    (tmp_path / "room.csv").write_text("0.5,0.5,0.5\n0.5,1,0.5\n0.5,0.5,0.5\n")
+    command = ("gapath", "map=file", "map.path=room.csv", "map.start=[0,1]", "map.target=[2,1]",
+               "planner=astar", "recorder=none")  # fmt: skip
+    assert "cost          1.5" in succeed(site, tmp_path, *command)
+    (tmp_path / "torn.csv").write_text("0.5,0.5\n0.5\n")
+    code, _, errors = run(site, tmp_path, "gapath", "map=weights", "map.path=torn.csv")
+    assert code == 2 and "torn.csv" in errors
+
+
+def test_an_edited_package_makes_other_runs(site, tmp_path):
+    edited = Path(shutil.copytree(site, tmp_path / "edited"))
+    command = ("gapath", "map=kg18_test1", "planner=one_bend", "recorder=none")
+    succeed(edited, tmp_path, *command)
+    assert "skipped" in succeed(edited, tmp_path, *command)
+    module = edited / "gapath_example" / "one_bend.py"
+    module.write_text(module.read_text() + "\n# edited\n")
+    assert "skipped" not in succeed(edited, tmp_path, *command)
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ('broken = "gapath_example.nothing"', "gapath.planners: broken = gapath_example.nothing"),
+        ('broken = "gapath_example.detour"', "gapath_example.detour: got a module without it"),
+        ('grid_search = "gapath_example.one_bend"', "a name that gapath does not use itself"),
+    ],
+)
+def test_a_package_that_is_wrong_is_one_clear_error(line, message, tmp_path):
+    source = Path(shutil.copytree(PLUGIN, tmp_path / "source"))
+    settings = source / "pyproject.toml"
+    head = '[project.entry-points."gapath.planners"]\n'
+    settings.write_text(settings.read_text().replace(head, f"{head}{line}\n"))
+    values = source / "gapath_example" / "conf" / "planner" / "broken.yaml"
+    values.write_text("kind: broken\n")
+    site = installed(source, tmp_path / "packages")
+    planner = line.partition(" ")[0].replace("grid_search", "astar")
+    code, out, errors = run(site, tmp_path, "gapath", f"planner={planner}", "recorder=none")
+    assert (code, out) == (2, "")
+    assert message in errors and "Traceback" not in errors
+    assert not (tmp_path / "outputs").exists()
+
+
+def test_its_components_keep_the_contracts(site):
+    """The tests that find every component find an installed package's, too."""
+    tests = ["tests/test_contract.py", "tests/metrics", "tests/driving/test_driving.py"]
+    names = "one_bend or wait_and_see or detour or counts or weights or round_trip"
+    command = [sys.executable, "-m", "pytest", "-n", "0", "-k", names, *tests]
+    done = subprocess.run(
+        command,
+        cwd=ROOT,
+        env=os.environ | {"PYTHONPATH": str(site)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout
+    assert int(re.search(r"(\d+) passed", done.stdout).group(1)) >= 20
+
+
+def blocks():
+    """The files that CONTRIBUTING.md shows: name -> content."""
+    text = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
+    return dict(re.findall(r"`([\w/.]+)`:\n\n```\w+\n(.*?)```", text, re.DOTALL))
+
+
+def test_the_guide_shows_the_files_of_this_package():
+    shown = blocks()
+    for name in ("one_bend.py", "conf/planner/one_bend.yaml", "detour.py", "pyproject.toml"):
+        assert any(path.endswith(name) for path in shown), name
+    for path, content in shown.items():
+        assert content == (TESTS / "plugin" / path).read_text("utf-8"), path
