@@ -46,6 +46,10 @@ check: $(VENV)/ready ## lint, check formats, types and the borders between layer
 	@$(BIN)/mypy
 	@$(BIN)/lint-imports
 
+.PHONY: hooks
+hooks: $(VENV)/ready ## check before each commit, too (.pre-commit-config.yaml)
+	@$(BIN)/pre-commit install
+
 .PHONY: bench
 bench: $(VENV)/ready ## measure against rivals and the paper; ratios, into outputs/bench
 	@$(BIN)/python -m benchmarks --output "$(OUTPUT)/bench"
