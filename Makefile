@@ -39,12 +39,31 @@ sweep: $(VENV)/ready ## vary what S04 leaves open: 36 settings of 24 cells (some
 test: $(VENV)/ready ## run all tests
 	@$(BIN)/python -m pytest
 
+# Nothing sees into a compiled kernel, so the tests of kernels run once more without the compiler:
+# some two minutes. test_evaluation would take many more, as would planners and drives, whose kernels
+# a test of test_golden runs without it. What only the compiler understands (vectors, lanes and the
+# half of evaluation that uses them) counts as missed.
+.PHONY: coverage
+coverage: $(VENV)/ready ## measure which lines the tests run; into build/coverage (about ten minutes)
+	@$(BIN)/coverage erase
+	@NUMBA_DISABLE_JIT=1 $(BIN)/coverage run -m pytest tests/kernels \
+	  --ignore tests/kernels/kg18/test_evaluation.py
+	@$(BIN)/coverage run -m pytest
+	@$(BIN)/coverage combine --quiet
+	@$(BIN)/coverage html --quiet
+	@$(BIN)/coverage report --skip-covered
+	@echo "line by line: build/coverage/index.html"
+
 .PHONY: check
 check: $(VENV)/ready ## lint, check formats, types and the borders between layers
 	@$(BIN)/ruff check
 	@$(BIN)/ruff format --check
 	@$(BIN)/mypy
 	@$(BIN)/lint-imports
+
+.PHONY: hooks
+hooks: $(VENV)/ready ## check before each commit, too (.pre-commit-config.yaml)
+	@$(BIN)/pre-commit install
 
 .PHONY: bench
 bench: $(VENV)/ready ## measure against rivals and the paper; ratios, into outputs/bench
