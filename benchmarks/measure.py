@@ -13,6 +13,7 @@ from typing import Any, NamedTuple, TypeAlias
 import gapath
 from gapath.components import build
 from gapath.discovery import yaml_values
+from gapath.planners import bspline_ga, visibility_ga
 from gapath.problem import Planner, Problem
 
 MAPS = ("kg18_test1", "kg18_test2", "kg18_test3", "kg18_test4")
@@ -94,6 +95,20 @@ def make_problem(map_name: str) -> Problem:
 def make_planner(name: str, **settings: Any) -> Planner:
     """Make a planner of ``conf/planner``, some of its values replaced."""
     planner: Planner = build("planner", yaml_values("planner", name) | settings, "planner")
+    return planner
+
+
+def make_bspline_ga(name: str, **settings: Any) -> bspline_ga.Planner:
+    """Make a planner of KG18, as `make_planner` does."""
+    planner = make_planner(name, **settings)
+    assert isinstance(planner, bspline_ga.Planner)
+    return planner
+
+
+def make_visibility_ga(**settings: Any) -> visibility_ga.Planner:
+    """Make M22's planner, as `make_planner` does."""
+    planner = make_planner("visibility_ga", **settings)
+    assert isinstance(planner, visibility_ga.Planner)
     return planner
 
 

@@ -1,12 +1,12 @@
 """What M22's genetic algorithm gets of a scene."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 import gapath
-from benchmarks.measure import make_planner
+from benchmarks.measure import make_visibility_ga
 from gapath.planning.stages import Stages
 from gapath.problem import Problem
 
@@ -26,7 +26,6 @@ class Scene(NamedTuple):
         grid = gapath.load_map(name)
         assert grid.start is not None and grid.target is not None
         problem = Problem(grid, grid.start, grid.target)
-        planner: Any = make_planner("visibility_ga")
-        graph = planner.survey(problem, Stages())
+        graph = make_visibility_ga().survey(problem, Stages())
         penalty = float(2 * (grid.rows + grid.cols))
         return cls(problem, graph.lengths, graph.obstacle_count, penalty)

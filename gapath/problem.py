@@ -321,3 +321,31 @@ class Batching(Protocol):
         list of Plan
             In their order.
         """
+
+
+@runtime_checkable
+class Accelerated(Protocol):
+    """A planner that several kernels can run, all of them with the same plans."""
+
+    @property
+    def kernels(self) -> tuple[str, ...]:
+        """Names of those that run here, the default first."""
+
+    def using(self, kernels: str) -> "Planner":
+        """Give a copy that plans by other kernels.
+
+        Parameters
+        ----------
+        kernels : str
+            One of the names.
+
+        Returns
+        -------
+        Planner
+            It has the same settings, so a run's key does not tell one from the other.
+
+        Raises
+        ------
+        InputError
+            For a name that is none of `kernels`.
+        """

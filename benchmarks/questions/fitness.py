@@ -31,8 +31,8 @@ from numpy.typing import NDArray
 
 from benchmarks.measure import Calls, Row, interleave, make_problem, quartiles, ratios
 from gapath.kernels.kg18.bspline import Basis, basis, rasterise
-from gapath.kernels.kg18.evaluation import evaluate, evaluate_one_by_one, workspace
-from gapath.kernels.kg18.lanes import chromosome_matrix
+from gapath.kernels.kg18.evaluation import evaluate, workspace
+from gapath.kernels.kg18.lanes import ONE_BY_ONE, SIDE_BY_SIDE, Way, chromosome_matrix
 from gapath.kernels.lines import KEY_BITS, OBSTACLE_BITS, ONE_OBSTACLE
 from gapath.kernels.units import ALLOW
 
@@ -79,16 +79,18 @@ def draw(table: NDArray[np.int32], count: int) -> Work:
 def by_kernels(work: Work) -> Calls:
     """Evaluate with gapath's kernels; each call gives the keys."""
 
-    def prepare(kernel: Callable[..., None]) -> Callable[[], NDArray[np.int64]]:
+    def prepare(way: Way) -> Callable[[], NDArray[np.int64]]:
         keys, memory = np.empty(work.size, dtype=np.int64), workspace(work.splines)
 
         def call() -> NDArray[np.int64]:
-            kernel(work.table, work.chromosomes, 0, work.size, work.splines, ALLOW, keys, memory)
+            evaluate(
+                way, work.table, work.chromosomes, 0, work.size, work.splines, ALLOW, keys, memory
+            )
             return keys
 
         return call
 
-    return {OURS: prepare(evaluate), SCALAR: prepare(evaluate_one_by_one)}
+    return {OURS: prepare(SIDE_BY_SIDE), SCALAR: prepare(ONE_BY_ONE)}
 
 
 def places(work: Work) -> tuple[NDArray[np.int32], NDArray[np.int64]]:

@@ -11,9 +11,7 @@ machine, so an order of magnitude, no more.
 """
 
 import statistics
-from collections.abc import Callable
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -23,50 +21,41 @@ from benchmarks.measure import (
     Calls,
     Row,
     interleave,
+    make_bspline_ga,
     make_planner,
     make_problem,
     quartiles,
     ratios,
 )
 from benchmarks.rivals import textbook
+from gapath.kernels.history import EPOCHS
 from gapath.kernels.kg18 import evolution
-from gapath.kernels.kg18.evolution import EvolutionResult
+from gapath.kernels.kg18.evolution import EvolutionResult, Evolve, run_evolutions, usable_kernels
 from gapath.kernels.rng import Stream, stream
 from gapath.pipelines.papers.kg18 import found_seconds
-from gapath.problem import Plan, Planner, Problem
+from gapath.planners.bspline_ga import Planner
+from gapath.problem import Plan, Problem
 
-KERNELS: dict[str, Callable[..., Any]] = {"gapath": evolution.evolve, "textbook": textbook.evolve}
-"""Kernels with the signature of `gapath.kernels.kg18.evolution.evolve`; rivals enter here."""
+KERNELS: dict[str, Evolve] = {
+    "gapath": evolution.KERNELS[usable_kernels()[0]],
+    "textbook": textbook.evolve,
+}
+"""Rivals enter here."""
 
 RUNS = 20
 """Runs of a batch."""
 
 
 def evolve_with(
-    kernel: Callable[..., Any], planner: Planner, problem: Problem, streams: Stream
+    kernel: Evolve, planner: Planner, problem: Problem, streams: Stream
 ) -> list[EvolutionResult]:
-    """Run a batch by another kernel."""
-    before = evolution.evolve
-    evolution.evolve = kernel
-    try:
-        return evolution.run_evolutions(*_query(planner, problem), streams.copy())
-    finally:
-        evolution.evolve = before
+    """Run a batch by some kernel."""
+    return run_evolutions(*planner.arguments(problem), streams.copy(), kernel)
 
 
-def plan_with(kernel: Callable[..., Any], planner: Planner, problem: Problem, seed: int) -> Plan:
-    """Plan once by another kernel."""
-    before = evolution.evolve
-    evolution.evolve = kernel
-    try:
-        return planner.plan(problem, stream(seed))
-    finally:
-        evolution.evolve = before
-
-
-def _query(planner: Any, problem: Problem) -> tuple[Any, ...]:
-    ends, rule = (*problem.start, *problem.target), int(problem.corner_cutting)
-    return problem.map.table, ends, rule, planner._settings, planner._basis
+def plan_with(kernel: Evolve, planner: Planner, problem: Problem, seed: int) -> Plan:
+    """Plan once by some kernel."""
+    return planner.using(kernel).plan(problem, stream(seed))
 
 
 def check_identical(ours: list[EvolutionResult], other: list[EvolutionResult], name: str) -> None:
@@ -76,12 +65,12 @@ def check_identical(ours: list[EvolutionResult], other: list[EvolutionResult], n
             raise RuntimeError(f"the {name} kernel gives another run {run}: {both}")
 
 
-def time_batches(planner: Any, problem: Problem, rounds: int) -> dict[str, list[float]]:
+def time_batches(planner: Planner, problem: Problem, rounds: int) -> dict[str, list[float]]:
     """Time one run of a batch, in microseconds, for each kernel and round."""
-    table, ends, rule, settings, basis = _query(planner, problem)
+    query = planner.arguments(problem)
     most, genes = planner.max_epochs, 2 * planner.control_points
     kept = (
-        np.empty((RUNS, most), dtype=evolution.EPOCHS),
+        np.empty((RUNS, most), dtype=EPOCHS),
         np.empty((RUNS, most, genes), dtype=np.int32),
         np.empty(RUNS, dtype=np.int64),
     )
@@ -90,8 +79,7 @@ def time_batches(planner: Any, problem: Problem, rounds: int) -> dict[str, list[
         streams = np.array([stream(seed, trial) for trial in range(RUNS)])
         calls: Calls = {}
         for name, kernel in KERNELS.items():
-            given = (table, ends, rule, settings, *basis, streams.copy(), *kept)
-            calls[name] = partial(kernel, *given)
+            calls[name] = partial(kernel, *query, streams.copy(), *kept)
         return calls
 
     times, _ = interleave([batch(seed) for seed in range(rounds + 1)])
@@ -107,7 +95,7 @@ def measure(quick: bool) -> list[Row]:
 
 
 def _setting(problem: Problem, name: str, rounds: int) -> Row:
-    planner: Any = make_planner(name)
+    planner = make_bspline_ga(name)
     streams = np.array([stream(0, trial) for trial in range(RUNS)])
     results = {rival: evolve_with(k, planner, problem, streams) for rival, k in KERNELS.items()}
     for rival, found in results.items():

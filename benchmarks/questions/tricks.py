@@ -14,13 +14,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.measure import Row, interleave, make_planner, make_problem, quartiles, ratios
+from benchmarks.measure import Row, interleave, make_bspline_ga, make_problem, quartiles, ratios
+from gapath.kernels.history import EPOCHS
 from gapath.kernels.jit import kernel
 from gapath.kernels.kg18.bspline import basis
-from gapath.kernels.kg18.evaluation import evaluate, evaluate_one_by_one, workspace
-from gapath.kernels.kg18.evolution import EPOCHS, evolve
-from gapath.kernels.kg18.lanes import GENES, chromosome_matrix, width
-from gapath.kernels.kg18.population import Mixing, rank_best, vary_one_by_one, vary_side_by_side
+from gapath.kernels.kg18.evaluation import evaluate, workspace
+from gapath.kernels.kg18.lanes import (
+    GENES,
+    ONE_BY_ONE,
+    SIDE_BY_SIDE,
+    Way,
+    chromosome_matrix,
+    width,
+)
+from gapath.kernels.kg18.population import Mixing, rank_best, vary
 from gapath.kernels.raster import COORDINATE_LIMIT
 from gapath.kernels.rng import fill, probability_threshold, stream
 from gapath.kernels.table import fill_table
@@ -56,16 +63,16 @@ def evaluation(rounds: int) -> list[Row]:
         rows[:, axis:genes:2] = random.integers(0, side, (len(rows), CONTROL_POINTS))
     memory = workspace(splines)
     known = np.empty(count, dtype=np.int64)
-    evaluate_one_by_one(table, rows, 0, count, splines, 0, known, memory)
+    evaluate(ONE_BY_ONE, table, rows, 0, count, splines, 0, known, memory)
 
-    def run(kernel: Callable[..., Any], first: int) -> NDArray[np.int64]:
+    def run(way: Way, first: int) -> NDArray[np.int64]:
         keys = known.copy()
         keys[first:] = -1
-        kernel(table, rows, first, count, splines, 0, keys, memory)
+        evaluate(way, table, rows, first, count, splines, 0, keys, memory)
         return keys
 
-    everyone, offspring = partial(run, evaluate, 0), partial(run, evaluate, count // 4)
-    one_by_one = partial(run, evaluate_one_by_one, 0)
+    everyone, offspring = partial(run, SIDE_BY_SIDE, 0), partial(run, SIDE_BY_SIDE, count // 4)
+    one_by_one = partial(run, ONE_BY_ONE, 0)
     what = "chromosomes evaluated side by side, not one by one"
     again = "the selected quarter not evaluated again"
     return [
@@ -76,6 +83,7 @@ def evaluation(rounds: int) -> list[Row]:
 
 @kernel
 def vary_many(
+    way: Way,
     parents: NDArray[np.int32],
     words: NDArray[np.uint64],
     threshold: np.uint64,
@@ -88,31 +96,22 @@ def vary_many(
     for i in range(children.shape[0]):
         a, b = i % SELECTED, 7 * i % SELECTED
         mixing = Mixing(0.8, 0.2, 0.55)
-        vary_side_by_side(
-            parents, a, b, mixing, words, i, zero, threshold, changes, limits, children, i, genes
+        vary(
+            way,
+            parents,
+            a,
+            b,
+            mixing,
+            words,
+            i,
+            zero,
+            threshold,
+            changes,
+            limits,
+            children,
+            i,
+            genes,
         )
-
-
-@kernel
-def vary_many_one_by_one(
-    parents: NDArray[np.int32],
-    words: NDArray[np.uint64],
-    threshold: np.uint64,
-    changes: NDArray[np.int32],
-    limits: NDArray[np.int32],
-    children: NDArray[np.int32],
-    genes: int,
-) -> None:
-    zero = np.int64(0)
-    for i in range(children.shape[0]):
-        a, b = i % SELECTED, 7 * i % SELECTED
-        mixing = Mixing(0.8, 0.2, 0.55)
-        vary_one_by_one(
-            parents, a, b, mixing, words, i, zero, threshold, changes, limits, children, i, genes
-        )
-
-
-KINDS = vary_many, vary_many_one_by_one
 
 
 def breeding(rounds: int) -> Row:
@@ -125,19 +124,22 @@ def breeding(rounds: int) -> Row:
     changes, limits = (np.empty((2, width(genes)), dtype=np.int32) for _ in range(2))
     changes[0], changes[1] = 51, 25
     limits[0], limits[1] = -COORDINATE_LIMIT, COORDINATE_LIMIT
-    planner: Any = make_planner("ga3")
-    threshold = probability_threshold(planner.mutation_probability)
-    children = {kernel: np.zeros((CHILDREN, width(genes)), dtype=np.int32) for kernel in KINDS}
+    threshold = probability_threshold(make_bspline_ga("ga3").mutation_probability)
+    children = {
+        way: np.zeros((CHILDREN, width(genes)), dtype=np.int32)
+        for way in (SIDE_BY_SIDE, ONE_BY_ONE)
+    }
 
-    def run(kernel: Callable[..., Any]) -> NDArray[np.int32]:
-        kernel(parents, words, threshold, changes, limits, children[kernel], genes)
-        return children[kernel][:, 2 : genes - 2]
+    def run(way: Way) -> NDArray[np.int32]:
+        vary_many(way, parents, words, threshold, changes, limits, children[way], genes)
+        return children[way][:, 2 : genes - 2]
 
     return compare(
         "genes crossed and mutated side by side, not one by one",
         "ns a child",
         CHILDREN,
-        *(partial(run, kernel) for kernel in KINDS),
+        partial(run, SIDE_BY_SIDE),
+        partial(run, ONE_BY_ONE),
         rounds,
     )
 
@@ -173,29 +175,19 @@ def ranking(rounds: int) -> Row:
 
 def batch(rounds: int) -> Row:
     """Do many runs in one call of the kernel."""
-    problem, planner = make_problem("kg18_test1"), make_planner("ga1")
+    problem, planner = make_problem("kg18_test1"), make_bspline_ga("ga1")
     streams = np.array([stream(0, trial) for trial in range(RUNS)])
-    settings: Any = planner
-    history = np.empty((RUNS, settings.max_epochs), dtype=EPOCHS)
-    chromosomes = np.empty((*history.shape, 2 * settings.control_points), dtype=np.int32)
+    history = np.empty((RUNS, planner.max_epochs), dtype=EPOCHS)
+    chromosomes = np.empty((*history.shape, 2 * planner.control_points), dtype=np.int32)
     epochs = np.empty(RUNS, dtype=np.int64)
-    ends = (*problem.start, *problem.target)
+    query = planner.arguments(problem)
 
     def run(runs: int) -> NDArray[np.int64]:
         random = streams.copy()
         for first in range(0, RUNS, runs):
             part = slice(first, first + runs)
-            evolve(
-                problem.map.table,
-                ends,
-                0,
-                settings._settings,
-                *settings._basis,
-                random[part],
-                history[part],
-                chromosomes[part],
-                epochs[part],
-            )
+            kept = history[part], chromosomes[part], epochs[part]
+            planner.evolve(*query, random[part], *kept)
         last = np.arange(RUNS), epochs - 1
         return np.column_stack([epochs, history["key"][last], chromosomes[last]])
 

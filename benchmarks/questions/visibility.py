@@ -22,7 +22,15 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.measure import Calls, Row, interleave, make_planner, quartiles, ratios
+from benchmarks.measure import (
+    Calls,
+    Row,
+    interleave,
+    make_planner,
+    make_visibility_ga,
+    quartiles,
+    ratios,
+)
 from benchmarks.rivals.visibility_library import GA, looked_up, unavailable
 from benchmarks.scene import Scene
 from gapath.kernels.m22.evolution import path_length, run_evolution
@@ -123,10 +131,8 @@ def plan_with_library(planner: Any, scene: Scene, name: str, seed: int) -> Any:
 
 def time_generations(scene: Scene, generations: int, rounds: int) -> list[Row]:
     """Time a generation of the profile v69 and of the library."""
-    planner: Any = make_planner(
-        "visibility_ga", ga2_profile="v69", max_epochs=generations, max_stagnation=None
-    )
-    settings = planner._settings(scene.problem, 1)
+    planner = make_visibility_ga(ga2_profile="v69", max_epochs=generations, max_stagnation=None)
+    settings = planner.kernel_settings(scene.problem, 1)
     without_stop = {"max_num_iteration": generations, "max_iteration_without_improv": None}
     why = unavailable()
 
@@ -171,7 +177,7 @@ def check_identical(ours: list[bool], theirs: list[bool]) -> None:
 
 def time_lines(scene: Scene, lines: int, rounds: int) -> Row:
     """Time the collision test of a line, between random pixels of the grown picture."""
-    planner: Any = make_planner("visibility_ga")
+    planner = make_visibility_ga()
     grown = planner.survey(scene.problem, Stages()).obstacles
     table = np.where(grown, np.int32(OBSTACLE), np.int32(0))
     image = np.where(grown, np.uint8(255), np.uint8(0))

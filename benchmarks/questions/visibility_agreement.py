@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import ks_2samp, mannwhitneyu
 
-from benchmarks.measure import Row, make_planner
+from benchmarks.measure import Row, make_visibility_ga
 from benchmarks.rivals.visibility_library import SCENES
 from benchmarks.scene import Scene
 from gapath.kernels.m22.evolution import run_evolution
@@ -45,11 +45,11 @@ def ours(scene: Scene, seeds: range, **settings: Any) -> dict[str, NDArray[Any]]
     dict of str to (n,) array
         The `MEASURES` of each run, f in pixels.
     """
-    planner: Any = make_planner("visibility_ga", **settings)
-    kernel_settings = planner._settings(scene.problem, 1)
+    planner = make_visibility_ga(**settings)
+    kernel_settings = planner.kernel_settings(scene.problem, 1)
     runs = [run_evolution(scene.lengths, scene.genes, kernel_settings, stream(s)) for s in seeds]
     generations = np.array([len(run.epochs) for run in runs])
-    born = planner.population - planner._parents
+    born = planner.population - planner.parents
     return {
         "f": np.array([run.epochs["best"][-1] for run in runs]) / SCALE,
         "generations": generations,

@@ -5,9 +5,11 @@ rounded to fields and joined by straight lines; the fitness is the sum of the we
 fields on them, eq. (5). The best quarter survives and breeds.
 """
 
-from dataclasses import dataclass
+import copy
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property, partial
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,13 +17,30 @@ from numpy.typing import NDArray
 from gapath.errors import require
 from gapath.kernels.history import fitness_history
 from gapath.kernels.kg18.bspline import Basis, basis, rasterise, way_points
-from gapath.kernels.kg18.evolution import SETTINGS, EvolutionResult, evaluations, run_evolutions
+from gapath.kernels.kg18.evolution import (
+    KERNELS,
+    SETTINGS,
+    EvolutionResult,
+    Evolve,
+    evaluations,
+    run_evolutions,
+    usable_kernels,
+)
 from gapath.kernels.lines import KEY_BITS, ONE_OBSTACLE
 from gapath.kernels.rng import Stream, probability_threshold
 from gapath.kernels.units import SCALE
 from gapath.problem import Evolution, Plan, PlanStatus, Query, no_path
 
 MAX_BYTES = 1 << 30
+
+Arguments: TypeAlias = tuple[
+    NDArray[np.int32],
+    tuple[int, int, int, int],
+    int,
+    NDArray[np.void],
+    NDArray[np.float64],
+    NDArray[np.float64],
+]
 
 
 @dataclass(frozen=True)
@@ -73,6 +92,8 @@ class Planner:
     margin: int
     clip_to_map: bool
     vln: float
+    evolve: Evolve = field(init=False, repr=False, compare=False)
+    """The kernels that plan; no setting, as all of them plan the same."""
 
     exact = False
 
@@ -95,7 +116,7 @@ class Planner:
         for name in ("line_jitter", "neighbourhood", "margin"):
             check(name, 0 <= getattr(self, name) <= 65536, "an integer from 0 to 65536")
         check("vln", 1 <= self.vln < float("inf"), "a finite number above every weight")
-        genes, points = 2 * self.control_points, len(self._basis.rounding)
+        genes, points = 2 * self.control_points, len(self.basis.rounding)
         needed = 4 * genes * (2 * self.population + self.max_epochs)
         needed += 8 * (genes * self.population + (5 + points) * self.max_epochs)
         require(
@@ -104,6 +125,39 @@ class Planner:
             f"{self.population}, {self.max_epochs}: {needed / 2**30:.1f} GiB",
             "settings that need at most 1 GiB",
         )
+        object.__setattr__(self, "evolve", KERNELS[self.kernels[0]])
+
+    @property
+    def kernels(self) -> tuple[str, ...]:
+        """Names of the kernels that run here, the default first."""
+        return usable_kernels()
+
+    def using(self, kernels: str | Evolve) -> "Planner":
+        """Give a planner that plans the same plans by other kernels.
+
+        Parameters
+        ----------
+        kernels : str or Evolve
+            One of `kernels`, or kernels of one's own.
+
+        Returns
+        -------
+        Planner
+            A copy.
+
+        Raises
+        ------
+        InputError
+            For a name that is none of `kernels`.
+        """
+        if isinstance(kernels, str):
+            require(
+                kernels in self.kernels, "kernels", kernels, f"one of {', '.join(self.kernels)}"
+            )
+            kernels = KERNELS[kernels]
+        other = copy.copy(self)
+        object.__setattr__(other, "evolve", kernels)
+        return other
 
     @property
     def most_at_once(self) -> int:
@@ -116,11 +170,13 @@ class Planner:
         return max(min((1 << 22) // history, 10**7 // evaluated, 64), 1)
 
     @cached_property
-    def _basis(self) -> Basis:
+    def basis(self) -> Basis:
+        """Basis functions at the way points."""
         return basis(self.control_points, self.way_points, self.sampling == "span")
 
     @cached_property
-    def _settings(self) -> np.ndarray[tuple[int, ...], np.dtype[np.void]]:
+    def kernel_settings(self) -> NDArray[np.void]:
+        """Settings as the kernels take them, (1,) `gapath.kernels.kg18.evolution.SETTINGS`."""
         mixing = Fraction(str(self.mixing))  # 0.8 is meant as 4/5, not as its nearest double
         if mixing.denominator > 10**6:
             mixing = mixing.limit_denominator(10**6)
@@ -133,6 +189,23 @@ class Planner:
         settings["mutation_threshold"] = probability_threshold(self.mutation_probability)
         settings["line_jitter_threshold"] = probability_threshold(self.line_jitter_probability)
         return settings
+
+    def arguments(self, problem: Query) -> Arguments:
+        """Give what kernels need to know of a problem.
+
+        Parameters
+        ----------
+        problem : Query
+            Start and target on a known map.
+
+        Returns
+        -------
+        table, ends, rule, settings, weights, rounding
+            The first arguments of `gapath.kernels.kg18.evolution.Evolve`.
+        """
+        ends = (*problem.start, *problem.target)
+        rule = int(problem.corner_cutting)
+        return problem.map.table, ends, rule, self.kernel_settings, *self.basis
 
     def plan(self, problem: Query, stream: Stream) -> Plan:
         """Run the genetic algorithm once.
@@ -166,14 +239,7 @@ class Planner:
         list of Plan
             As `plan` gives them.
         """
-        results = run_evolutions(
-            problem.map.table,
-            (*problem.start, *problem.target),
-            int(problem.corner_cutting),
-            self._settings,
-            self._basis,
-            streams,
-        )
+        results = run_evolutions(*self.arguments(problem), streams, self.evolve)
         return [self._plan(result) for result in results]
 
     def _plan(self, result: EvolutionResult) -> Plan:
@@ -181,7 +247,7 @@ class Planner:
         found = key < ONE_OBSTACLE
         return Plan(
             PlanStatus.FOUND if found else PlanStatus.NOT_FOUND,
-            path=rasterise(result.chromosomes[-1], *self._basis) if found else no_path(),
+            path=rasterise(result.chromosomes[-1], *self.basis) if found else no_path(),
             weights=(key & (ONE_OBSTACLE - 1)) / SCALE,
             obstacles=key >> KEY_BITS,
             vln=self.vln,
@@ -192,7 +258,7 @@ class Planner:
         )
 
     def _lines(self, result: EvolutionResult) -> NDArray[np.int32]:
-        return np.asarray(way_points(result.chromosomes[-1:], self._basis)[0])
+        return np.asarray(way_points(result.chromosomes[-1:], self.basis)[0])
 
     def _evolution(self, result: EvolutionResult) -> Evolution:
         best, mean = fitness_history(result.epochs, self.population, self.vln, SCALE)
@@ -200,6 +266,6 @@ class Planner:
             best=best,
             mean=mean,
             chromosomes=result.chromosomes,
-            way_points=way_points(result.chromosomes, self._basis),
+            way_points=way_points(result.chromosomes, self.basis),
             genotype="control_points",
         )

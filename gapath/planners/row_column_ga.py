@@ -85,7 +85,8 @@ class Planner:
         check("vln", 1 <= self.vln < float("inf"), "a finite number above every weight")
 
     @cached_property
-    def _settings(self) -> NDArray[np.void]:
+    def kernel_settings(self) -> NDArray[np.void]:
+        """Settings as the kernel takes them, (1,) `gapath.kernels.s04.evolution.SETTINGS`."""
         settings = np.zeros(1, dtype=SETTINGS)
         for name in SETTINGS.names or ():
             if hasattr(self, name):
@@ -142,7 +143,8 @@ class Planner:
         """
         grid = problem.map
         frame = Frame.of(problem)
-        result = run_evolution(grid.table, frame.ends, frame.flips, self._settings, stream)
+        settings = self.kernel_settings
+        result = run_evolution(grid.table, frame.ends, frame.flips, settings, stream)
         key = int(result.epochs["key"][-1])
         found = key < ONE_OBSTACLE
         return Plan(

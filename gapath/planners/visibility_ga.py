@@ -92,7 +92,7 @@ class Planner(Surveyor):
         check("crossover_probability", 0.05 <= self.crossover_probability <= 1, "in [0.05, 1]")
         check(
             "parents_portion",
-            max(self._elites, 2) <= self._parents < self.population,
+            max(self._elites, 2) <= self.parents < self.population,
             "a portion with at least two parents and the elite, that leaves room for offspring",
         )
 
@@ -102,13 +102,28 @@ class Planner(Surveyor):
         return int(portion) if self.ga2_profile == "v64" and portion > 1 else math.ceil(portion)
 
     @property
-    def _parents(self) -> int:
+    def parents(self) -> int:
+        """Individuals that breed; they live on."""
         parents = int(self.parents_portion * self.population)
         return parents + (self.population - parents) % 2  # children come in pairs
 
-    def _settings(self, problem: Query, scale: int) -> NDArray[np.void]:
+    def kernel_settings(self, problem: Query, scale: int) -> NDArray[np.void]:
+        """Give the settings as the kernel takes them.
+
+        Parameters
+        ----------
+        problem : Query
+            Tells the penalty.
+        scale : int
+            Fields of the map, along a side, that are one pixel of the planner's picture.
+
+        Returns
+        -------
+        (1,) SETTINGS
+            `gapath.kernels.m22.evolution.SETTINGS`.
+        """
         old, middle = self.ga2_profile == "v64", self.ga2_profile == "v67"
-        parents = self._parents
+        parents = self.parents
         some = max(2, int(parents * self.crossover_probability))
         settings = np.zeros(1, dtype=SETTINGS)
         settings["population"] = self.population
@@ -187,14 +202,16 @@ class Planner(Surveyor):
         survey = partial(graph.drawn, problem)
         if not len(graph.shortest(informed=False)[0]):
             return Plan(PlanStatus.INFEASIBLE, survey=survey, stages=stages.seconds)
-        result = run_evolution(graph.lengths, genes, self._settings(problem, graph.scale), stream)
+        result = run_evolution(
+            graph.lengths, genes, self.kernel_settings(problem, graph.scale), stream
+        )
         stages.end("genetic algorithm")
         turns = _turns(result.chromosomes, self._ends_are_genes)
         epochs = len(result.epochs)
         plan = Plan(
             PlanStatus.NOT_FOUND,
             epochs=epochs,
-            evaluations=self.population + (self.population - self._parents) * (epochs - 1),
+            evaluations=self.population + (self.population - self.parents) * (epochs - 1),
             trace=partial(_evolution, result, graph, problem, turns, self.population),
             survey=survey,
             stages=stages.seconds,

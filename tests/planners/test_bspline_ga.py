@@ -10,9 +10,11 @@ from strategies import planner, planners, problems
 from gapath.errors import InputError
 from gapath.grid import GridMap
 from gapath.kernels import rng
+from gapath.kernels.jit import JIT
+from gapath.kernels.kg18 import evolution
 from gapath.mapio.reconstructed import generate
 from gapath.planning.flaw import flaw
-from gapath.problem import PlanStatus, Problem
+from gapath.problem import Accelerated, PlanStatus, Problem
 
 
 def same_as_twin(problem, ga, seed, trial):
@@ -78,6 +80,45 @@ def test_many_plans_in_one_call_are_those_of_many_calls():
     advanced = rng.stream(7, 8)
     ga.plan(problem, advanced)
     assert streams[8].tolist() == advanced.tolist()
+
+
+needs_jit = pytest.mark.skipif(not JIT, reason="vectors need the compiler")
+
+
+@needs_jit
+@given(problems(), planners(), st.integers(0, 2**64 - 1))
+def test_all_kernels_plan_the_same(problem, ga, seed):
+    assert isinstance(ga, Accelerated) and ga.kernels == ("vectors", "scalar")
+    vectors, scalar = (ga.using(name) for name in ga.kernels)
+    assert vectors.evolve is ga.evolve is not scalar.evolve
+    assert vectors == ga == scalar
+    one, other = (each.plan(problem, rng.stream(seed)) for each in (vectors, scalar))
+    assert (one.cost, one.path.tolist()) == (other.cost, other.path.tolist())
+    assert one.evolution.mean.tolist() == other.evolution.mean.tolist()
+    assert one.evolution.chromosomes.tolist() == other.evolution.chromosomes.tolist()
+
+
+def test_kernels_that_do_not_run_here_are_refused(monkeypatch):
+    with pytest.raises(InputError, match=r"kernels: got cuda, expected one of .*scalar"):
+        planner().using("cuda")
+    monkeypatch.setattr(evolution, "JIT", False)
+    assert planner().kernels == ("scalar",)
+    assert planner().evolve is evolution.KERNELS["scalar"]
+    with pytest.raises(InputError, match="kernels: got vectors, expected one of scalar"):
+        planner().using("vectors")
+
+
+def test_a_planner_may_be_given_kernels_of_ones_own():
+    def evolve(*arguments):
+        called.append(len(arguments))
+        evolution.KERNELS["scalar"](*arguments)
+
+    called = []
+    problem = Problem(GridMap("empty", np.full((9, 9), 0.5)), (0, 4), (8, 4))
+    ga = planner(min_epochs=1)
+    own = ga.using(evolve).plan(problem, rng.stream(0))
+    assert called == [10]
+    assert own.path.tolist() == ga.plan(problem, rng.stream(0)).path.tolist()
 
 
 def test_long_histories_are_not_kept_many_at_a_time():

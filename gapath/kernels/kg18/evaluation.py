@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.kernels.jit import JIT, kernel
+from gapath.kernels.jit import kernel
 from gapath.kernels.kg18.bspline import Basis
 from gapath.kernels.kg18.fitness import fitness
 from gapath.kernels.kg18.lanes import (
@@ -23,6 +23,7 @@ from gapath.kernels.kg18.lanes import (
     READ,
     SLOPE,
     STEPS,
+    Way,
     join_way_points,
     place_way_points,
     store_fields,
@@ -48,7 +49,7 @@ _PART = (1 << SHIFT) - 1  # of a position: where within its field
 
 
 class Workspace(NamedTuple):
-    """Memory of `evaluate` for k control points and w way points; rows as in `lanes`."""
+    """Memory of vectors for k control points and w way points; rows as in `lanes`."""
 
     genes: NDArray[np.int32]
     """2 k rows and some more: x and y of each control point."""
@@ -200,43 +201,8 @@ def _corners(table: NDArray[np.int32], memory: Workspace, lines: int, i: int, ru
 
 
 @kernel
-def evaluate_one_by_one(
-    table: NDArray[np.int32],
-    chromosomes: NDArray[np.int32],
-    begin: int,
-    end: int,
-    basis: Basis,
-    rule: int,
-    keys: NDArray[np.int64],
-    _: Workspace,
-) -> None:
-    """Evaluate chromosomes (KG18 eq. (5)).
-
-    Parameters
-    ----------
-    table : (rows, cols) int32
-        `GridMap.table`.
-    chromosomes : (n, m) int32
-        Control points x1, y1, ..., xk, yk, a chromosome a row.
-    begin, end : int
-        Rows to evaluate: from the first to before the second.
-    basis : Basis
-        Basis functions at the way points.
-    rule : int
-        Corner-cutting rule.
-    keys : (p,) int64
-        Those from `begin` to before `end` are overwritten, as `gapath.kernels.kg18.fitness.fitness`
-        gives them.
-    _ : Workspace
-        Memory.
-    """
-    genes = 2 * basis.weights.shape[1]
-    for i in range(begin, end):
-        keys[i] = fitness(table, chromosomes[i, :genes], basis, rule)
-
-
-@kernel
-def evaluate_side_by_side(
+def evaluate(
+    way: Way,
     table: NDArray[np.int32],
     chromosomes: NDArray[np.int32],
     begin: int,
@@ -246,10 +212,34 @@ def evaluate_side_by_side(
     keys: NDArray[np.int64],
     memory: Workspace,
 ) -> None:
-    """Do what `evaluate_one_by_one` does, but faster.
+    """Evaluate chromosomes (KG18 eq. (5)).
 
-    It reads whole vectors of a `gapath.kernels.kg18.lanes.chromosome_matrix`.
+    Parameters
+    ----------
+    way : None or True
+        `SIDE_BY_SIDE` or `ONE_BY_ONE`; the keys are the same.
+    table : (rows, cols) int32
+        `GridMap.table`.
+    chromosomes : (n, m) int32
+        Control points x1, y1, ..., xk, yk, a chromosome a row. Side by side whole vectors are read
+        of them: a `gapath.kernels.kg18.lanes.chromosome_matrix`.
+    begin, end : int
+        Rows to evaluate: from the first to before the second.
+    basis : Basis
+        Basis functions at the way points.
+    rule : int
+        Corner-cutting rule.
+    keys : (p,) int64
+        Those from `begin` to before `end` are overwritten, as `gapath.kernels.kg18.fitness.fitness`
+        gives them.
+    memory : Workspace
+        Memory for vectors.
     """
+    if way is not None:
+        genes = 2 * basis.weights.shape[1]
+        for i in range(begin, end):
+            keys[i] = fitness(table, chromosomes[i, :genes], basis, rule)
+        return
     rows, cols = table.shape
     flat = table.reshape(rows * cols)
     values, indices = memory.lines, memory.indices
@@ -296,6 +286,3 @@ def evaluate_side_by_side(
                 obstacles += _corners(table, memory, lines, i, rule)
             counted = MOST_OBSTACLES if obstacles > MOST_OBSTACLES else obstacles
             keys[first + i] = (counted << KEY_BITS) + cost
-
-
-evaluate = evaluate_side_by_side if JIT else evaluate_one_by_one

@@ -4,16 +4,18 @@ What goes in and out are arrays and plain numbers: to unpack a NamedTuple of as 
 takes numba longer than an epoch.
 """
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from functools import partial
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gapath.kernels.history import EPOCHS
-from gapath.kernels.jit import kernel
+from gapath.kernels.jit import JIT, kernel
 from gapath.kernels.kg18.bspline import Basis
 from gapath.kernels.kg18.evaluation import evaluate, workspace
-from gapath.kernels.kg18.lanes import GENES, chromosome_matrix
+from gapath.kernels.kg18.lanes import GENES, ONE_BY_ONE, SIDE_BY_SIDE, Way, chromosome_matrix
 from gapath.kernels.kg18.population import (
     InitialPopulation,
     Mixing,
@@ -52,46 +54,54 @@ class EvolutionResult(NamedTuple):
     """(E, 2 k) the best individual."""
 
 
-def run_evolutions(
-    table: NDArray[np.int32],
-    ends: tuple[int, int, int, int],
-    rule: int,
-    settings: NDArray[np.void],
-    basis: Basis,
-    streams: NDArray[np.uint64],
-) -> list[EvolutionResult]:
-    """Run the genetic algorithm once for each stream and cut each history to its epochs.
+class Evolve(Protocol):
+    """Kernels of KG18's evolution, whatever runs them: all give the same, bit for bit."""
 
-    Parameters
-    ----------
-    table, ends, rule, settings, streams
-        As of `evolve`.
-    basis : Basis
-        Basis functions at w way points.
+    def __call__(
+        self,
+        table: NDArray[np.int32],
+        ends: tuple[int, int, int, int],
+        rule: int,
+        settings: NDArray[np.void],
+        weights: NDArray[np.float64],
+        rounding: NDArray[np.float64],
+        streams: NDArray[np.uint64],
+        history: NDArray[np.void],
+        chromosomes: NDArray[np.int32],
+        epochs: NDArray[np.int64],
+        /,
+    ) -> None:
+        """Run the genetic algorithm, once for each stream.
 
-    Returns
-    -------
-    list of EvolutionResult
-        The last row of each is the answer.
-    """
-    runs, most = len(streams), int(settings["max_epochs"][0])
-    history = np.empty((runs, most), dtype=EPOCHS)
-    chromosomes = np.empty((runs, most, 2 * basis.weights.shape[1]), dtype=np.int32)
-    epochs = np.empty(runs, dtype=np.int64)
-    evolve(table, ends, rule, settings, *basis, streams, history, chromosomes, epochs)
-    return [
-        EvolutionResult(history[run, :taken], chromosomes[run, :taken])
-        for run, taken in enumerate(epochs.tolist())
-    ]
+        It returns nothing, because an interrupt that comes while numba makes Python objects
+        of a result kills the process.
 
-
-def evaluations(population: int, epochs: int) -> int:
-    """Count the chromosomes evaluated: the selected quarter, copied, is not evaluated again."""
-    return population + (epochs - 1) * (population - population // 4)
+        Parameters
+        ----------
+        table : (rows, cols) int32
+            `GridMap.table`.
+        ends : (x, y, x, y)
+            Start and target.
+        rule : int
+            Corner-cutting rule.
+        settings : (1,) SETTINGS
+            Settings; the population is at least 4.
+        weights, rounding
+            `gapath.kernels.kg18.bspline.Basis`.
+        streams : (n, 4) uint64
+            Random streams, one a run, advanced in place.
+        history : (n, max_epochs) EPOCHS
+            Overwritten.
+        chromosomes : (n, max_epochs, 2 k) int32
+            Overwritten with each epoch's best individual.
+        epochs : (n,) int64
+            Overwritten with the epochs taken.
+        """
 
 
 @kernel
 def evolve(
+    way: Way,
     table: NDArray[np.int32],
     ends: tuple[int, int, int, int],
     rule: int,
@@ -105,29 +115,12 @@ def evolve(
 ) -> None:
     """Run the genetic algorithm, once for each stream.
 
-    It returns nothing, because an interrupt that comes while numba makes Python objects
-    of a result kills the process.
-
     Parameters
     ----------
-    table : (rows, cols) int32
-        `GridMap.table`.
-    ends : (x, y, x, y)
-        Start and target.
-    rule : int
-        Corner-cutting rule.
-    settings : (1,) SETTINGS
-        Settings; the population is at least 4.
-    weights, rounding
-        `gapath.kernels.kg18.bspline.Basis`.
-    streams : (n, 4) uint64
-        Random streams, one a run, advanced in place.
-    history : (n, max_epochs) EPOCHS
-        Overwritten.
-    chromosomes : (n, max_epochs, 2 k) int32
-        Overwritten with each epoch's best individual.
-    epochs : (n,) int64
-        Overwritten with the epochs taken.
+    way : None or True
+        `SIDE_BY_SIDE` or `ONE_BY_ONE`.
+    table, ends, rule, settings, weights, rounding, streams, history, chromosomes, epochs
+        As of `Evolve`.
     """
     rows, cols = table.shape
     setting = settings[0]
@@ -170,11 +163,11 @@ def evolve(
     for run in range(streams.shape[0]):
         stream = streams[run]
         fill(stream, first[:-GENES])
-        initialise(population, size, Ends(*ends), rows, cols, limits, initial, first)
+        initialise(way, population, size, Ends(*ends), rows, cols, limits, initial, first)
         evaluated = np.int64(0)  # individuals before this one carry their key over
         epoch = 0
         while True:
-            evaluate(table, population, evaluated, size, basis, rule, keys, memory)
+            evaluate(way, table, population, evaluated, size, basis, rule, keys, memory)
             rank_best(keys, best)
 
             obstacle_sum = np.int64(0)
@@ -205,6 +198,7 @@ def evolve(
                 if keys[a] >= keys[b]:  # on equal fitness B dominates, eq. (6)
                     a, b = b, a
                 vary(
+                    way,
                     population,
                     a,
                     b,
@@ -223,3 +217,58 @@ def evolve(
             keys, offspring_keys = offspring_keys, keys
             evaluated = selected
         epochs[run] = epoch
+
+
+VECTORS, SCALAR = "vectors", "scalar"
+
+KERNELS: Mapping[str, Evolve] = {
+    VECTORS: partial(evolve, SIDE_BY_SIDE),
+    SCALAR: partial(evolve, ONE_BY_ONE),
+}
+"""By name; only the kernels that are called are compiled."""
+
+
+def usable_kernels() -> tuple[str, ...]:
+    """Name the `KERNELS` that run here, the default first: vectors need the compiler."""
+    return tuple(KERNELS) if JIT else (SCALAR,)
+
+
+def run_evolutions(
+    table: NDArray[np.int32],
+    ends: tuple[int, int, int, int],
+    rule: int,
+    settings: NDArray[np.void],
+    weights: NDArray[np.float64],
+    rounding: NDArray[np.float64],
+    streams: NDArray[np.uint64],
+    evolve: Evolve,
+) -> list[EvolutionResult]:
+    """Run the genetic algorithm once for each stream and cut each history to its epochs.
+
+    Parameters
+    ----------
+    table, ends, rule, settings, weights, rounding, streams
+        As of `Evolve`.
+    evolve : Evolve
+        The kernels.
+
+    Returns
+    -------
+    list of EvolutionResult
+        The last row of each is the answer.
+    """
+    runs, most = len(streams), int(settings["max_epochs"][0])
+    history = np.empty((runs, most), dtype=EPOCHS)
+    chromosomes = np.empty((runs, most, 2 * weights.shape[1]), dtype=np.int32)
+    epochs = np.empty(runs, dtype=np.int64)
+    given = table, ends, rule, settings, weights, rounding, streams
+    evolve(*given, history, chromosomes, epochs)
+    return [
+        EvolutionResult(history[run, :taken], chromosomes[run, :taken])
+        for run, taken in enumerate(epochs.tolist())
+    ]
+
+
+def evaluations(population: int, epochs: int) -> int:
+    """Count the chromosomes evaluated: the selected quarter, copied, is not evaluated again."""
+    return population + (epochs - 1) * (population - population // 4)

@@ -27,7 +27,7 @@ or gene is computed, too, and read by nobody.
 Rounding down is done by shifting to positive numbers and cutting off, which every processor can.
 """
 
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from llvmlite import ir
@@ -36,6 +36,11 @@ from numpy.typing import NDArray
 from gapath.kernels.jit import intrinsic, kernel, types
 from gapath.kernels.kg18.vectors import F64, I32, I64, Code, Vector
 from gapath.kernels.raster import COORDINATE_LIMIT, SHIFT
+
+Way: TypeAlias = bool | None
+SIDE_BY_SIDE, ONE_BY_ONE = None, True
+"""Ways of computing the same: as vectors, or one number after the other. numba drops a branch on
+``way is None`` by the argument's type, before it compiles: what was not chosen costs nothing."""
 
 CHROMOSOMES, FIELDS, GENES = 16, 32, 8
 
@@ -325,7 +330,7 @@ def vary_genes(
     child: Any,
     gene: Any,
 ) -> Any:
-    """Make the next `GENES` genes of a child: `gapath.kernels.kg18.population.vary_one_by_one`.
+    """Make the next `GENES` genes of a child: `gapath.kernels.kg18.population.vary`.
 
     Parameters
     ----------

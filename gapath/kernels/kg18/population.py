@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.kernels.jit import JIT, kernel
-from gapath.kernels.kg18.lanes import GENES, vary_genes
+from gapath.kernels.jit import kernel
+from gapath.kernels.kg18.lanes import GENES, Way, vary_genes
 from gapath.kernels.lines import Ends
 from gapath.kernels.raster import COORDINATE_LIMIT
 from gapath.kernels.rng import happens, low
@@ -69,7 +69,8 @@ class Mixing(NamedTuple):
 
 
 @kernel
-def vary_one_by_one(
+def vary(
+    way: Way,
     parents: NDArray[np.int32],
     fitter: int,
     other: int,
@@ -88,6 +89,8 @@ def vary_one_by_one(
 
     Parameters
     ----------
+    way : None or True
+        `SIDE_BY_SIDE` or `ONE_BY_ONE`; the child is the same.
     parents : (n, m) int32
         A chromosome a row.
     fitter, other : int
@@ -114,58 +117,39 @@ def vary_one_by_one(
     genes : int
         2 k.
     """
-    for g in range(2, genes - 2):
-        mixed = mixing.share * parents[fitter, g] + mixing.rest * parents[other, g]
-        gene = np.int64(np.floor(mixed + mixing.rounding))
-        word = words[first + g - 2]
-        if happens(word, threshold):
-            values = np.int64(changes[0, g])
-            gene += low(word >> np.uint64(shift), values) - changes[1, g]
-        children[child, g] = min(max(gene, np.int64(limits[0, g])), np.int64(limits[1, g]))
-
-
-@kernel
-def vary_side_by_side(
-    parents: NDArray[np.int32],
-    fitter: int,
-    other: int,
-    mixing: Mixing,
-    words: NDArray[np.uint64],
-    first: int,
-    shift: int,
-    threshold: np.uint64,
-    changes: NDArray[np.int32],
-    limits: NDArray[np.int32],
-    children: NDArray[np.int32],
-    child: int,
-    genes: int,
-) -> None:
-    """Do what `vary_one_by_one` does, but faster."""
-    for g in range(2, genes - 2, GENES):
-        vary_genes(
-            parents,
-            fitter,
-            other,
-            mixing.share,
-            mixing.rest,
-            mixing.rounding,
-            words,
-            first + g - 2,
-            shift,
-            threshold,
-            changes,
-            limits,
-            children,
-            child,
-            g,
-        )
-
-
-vary = vary_side_by_side if JIT else vary_one_by_one
+    if way is None:
+        for g in range(2, genes - 2, GENES):
+            vary_genes(
+                parents,
+                fitter,
+                other,
+                mixing.share,
+                mixing.rest,
+                mixing.rounding,
+                words,
+                first + g - 2,
+                shift,
+                threshold,
+                changes,
+                limits,
+                children,
+                child,
+                g,
+            )
+    else:
+        for g in range(2, genes - 2):
+            mixed = mixing.share * parents[fitter, g] + mixing.rest * parents[other, g]
+            gene = np.int64(np.floor(mixed + mixing.rounding))
+            word = words[first + g - 2]
+            if happens(word, threshold):
+                values = np.int64(changes[0, g])
+                gene += low(word >> np.uint64(shift), values) - changes[1, g]
+            children[child, g] = min(max(gene, np.int64(limits[0, g])), np.int64(limits[1, g]))
 
 
 @kernel
 def initialise(
+    way: Way,
     population: NDArray[np.int32],
     size: int,
     ends: Ends,
@@ -183,6 +167,8 @@ def initialise(
 
     Parameters
     ----------
+    way : None or True
+        As of `vary`.
     population : (n, m) int32
         The first P rows are overwritten, but for start and target.
     size : int
@@ -226,6 +212,7 @@ def initialise(
                 changes[1, g] = 0
         while i < size and 3 * i // size == part:
             vary(
+                way,
                 middle,
                 np.int64(0),
                 np.int64(0),

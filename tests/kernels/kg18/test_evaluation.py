@@ -8,12 +8,15 @@ from hypothesis import strategies as st
 from strategies import RULES, weights
 
 from gapath.grid import GridMap
+from gapath.kernels.jit import JIT
 from gapath.kernels.kg18.bspline import basis
 from gapath.kernels.kg18.evaluation import MOST_FIELDS, evaluate, workspace
 from gapath.kernels.kg18.fitness import fitness
-from gapath.kernels.kg18.lanes import chromosome_matrix
+from gapath.kernels.kg18.lanes import ONE_BY_ONE, SIDE_BY_SIDE, chromosome_matrix
 from gapath.kernels.raster import COORDINATE_LIMIT
 from gapath.kernels.units import OBSTACLE
+
+WAY = SIDE_BY_SIDE if JIT else ONE_BY_ONE
 
 
 def both(table, chromosomes, splines, rule):
@@ -24,7 +27,7 @@ def both(table, chromosomes, splines, rule):
     keys = np.full(count + 3, -7, dtype=np.int64)
     memory = workspace(splines)
     for _ in range(2):  # the second time on memory that is used
-        evaluate(table, matrix, 2, count + 2, splines, rule, keys, memory)
+        evaluate(WAY, table, matrix, 2, count + 2, splines, rule, keys, memory)
     assert keys[:2].tolist() == [-7, -7] and keys[-1] == -7
     return keys[2:-1].tolist(), [fitness(table, row, splines, rule) for row in chromosomes]
 

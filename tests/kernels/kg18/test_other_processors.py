@@ -9,13 +9,14 @@ import pytest
 
 from gapath.kernels.jit import JIT
 from gapath.kernels.kg18.bspline import basis
-from gapath.kernels.kg18.evaluation import evaluate, evaluate_one_by_one, workspace
-from gapath.kernels.kg18.lanes import GENES, chromosome_matrix, width
-from gapath.kernels.kg18.population import Mixing, vary, vary_one_by_one
+from gapath.kernels.kg18.evaluation import evaluate, workspace
+from gapath.kernels.kg18.lanes import GENES, ONE_BY_ONE, SIDE_BY_SIDE, chromosome_matrix, width
+from gapath.kernels.kg18.population import Mixing, vary
 from gapath.kernels.raster import COORDINATE_LIMIT
 from gapath.kernels.rng import probability_threshold
 from gapath.kernels.units import ALLOW, FORBID, NO_DIAGONALS, OBSTACLE, ONE_SIDE
 
+WAYS = (SIDE_BY_SIDE, ONE_BY_ONE)
 RULES = (ALLOW, ONE_SIDE, FORBID, NO_DIAGONALS)
 MAPS = ((50, 100), (500, 1000), (4000, 4000), (3, 4000), (1, 1))
 
@@ -33,10 +34,10 @@ def check_evaluations(random, rows, cols):
                 genes = genes.clip(-COORDINATE_LIMIT, COORDINATE_LIMIT)
                 chromosomes[:count, axis : 2 * k : 2] = genes
             splines, found = basis(k, 5, False), []
-            for kernel in (evaluate, evaluate_one_by_one):
+            for way in WAYS:
                 keys = np.empty(count, dtype=np.int64)
                 memory = workspace(splines)
-                kernel(table, chromosomes, 0, count, splines, rule, keys, memory)
+                evaluate(way, table, chromosomes, 0, count, splines, rule, keys, memory)
                 found.append(keys.tolist())
             assert found[0] == found[1], (rows, cols, beyond, rule)
 
@@ -55,9 +56,10 @@ def check_variations(random, far):
     mixing = Mixing(share, 1 - share, 0.5 + 0.25 / denominator)
     threshold, shift = probability_threshold(random.random()), 32 * int(random.integers(2))
     found = []
-    for kernel in (vary, vary_one_by_one):
+    for way in WAYS:
         child = np.zeros((1, columns), dtype=np.int32)
-        kernel(parents, 0, 1, mixing, words, 0, shift, threshold, changes, limits, child, 0, genes)
+        given = mixing, words, 0, shift, threshold, changes, limits, child, 0, genes
+        vary(way, parents, 0, 1, *given)
         found.append(child[0, 2 : genes - 2].tolist())
     assert found[0] == found[1], (k, far, mixing)
 

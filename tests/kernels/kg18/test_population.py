@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gapath.kernels.jit import JIT
-from gapath.kernels.kg18.lanes import GENES, width
+from gapath.kernels.kg18.lanes import GENES, ONE_BY_ONE, SIDE_BY_SIDE, width
 from gapath.kernels.kg18.population import (
     InitialPopulation,
     Mixing,
@@ -14,12 +14,12 @@ from gapath.kernels.kg18.population import (
     initialise,
     rank_best,
     vary,
-    vary_one_by_one,
 )
 from gapath.kernels.lines import Ends
 from gapath.kernels.raster import COORDINATE_LIMIT
 from gapath.kernels.rng import fill, probability_threshold, stream
 
+WAYS = (SIDE_BY_SIDE, ONE_BY_ONE) if JIT else (ONE_BY_ONE,)
 ROWS, COLS = 50, 100
 ENDS = Ends(10, 24, 90, 30)
 EVEN = Mixing(0.8, 0.2, 0.5 + 0.25 / 5)
@@ -41,7 +41,7 @@ def initial(size=300, k=5, jitter=0.5, margin=4):
     population = np.full((size + 1, width(2 * k)), -7, dtype=np.int32)
     settings = InitialPopulation(12, probability_threshold(jitter), 7, margin)
     drawn = words(size * (2 * k - 4))
-    initialise(population, size, ENDS, ROWS, COLS, limits(2 * k), settings, drawn)
+    initialise(WAYS[0], population, size, ENDS, ROWS, COLS, limits(2 * k), settings, drawn)
     assert (population[size] == -7).all()
     return population[:size, 2 : 2 * k - 2].reshape(size, k - 2, 2)
 
@@ -83,12 +83,12 @@ def test_start_and_target_have_no_choice():
     assert (greatest[2:6] == COORDINATE_LIMIT).all()
 
 
-@pytest.fixture(params=[vary, vary_one_by_one] if JIT else [vary])
-def operator(request):
+@pytest.fixture(params=WAYS)
+def way(request):
     return request.param
 
 
-def children(operator, parents, genes, mixing=EVEN, probability=0.0, half=0, clip=False, seed=0):
+def children(way, parents, genes, mixing=EVEN, probability=0.0, half=0, clip=False, seed=0):
     """Breed one child of the first two rows for each other row."""
     parents = np.array(parents, dtype=np.int32)
     matrix = np.zeros((2, width(genes)), dtype=np.int32)
@@ -99,7 +99,7 @@ def children(operator, parents, genes, mixing=EVEN, probability=0.0, half=0, cli
     threshold = probability_threshold(probability)
     drawn = words(genes - 4, seed)
     box = limits(genes, clip)
-    operator(matrix, 0, 1, mixing, drawn, 0, 0, threshold, changes, box, found, 0, genes)
+    vary(way, matrix, 0, 1, mixing, drawn, 0, 0, threshold, changes, box, found, 0, genes)
     return found[0, 2 : genes - 2]
 
 
@@ -107,26 +107,26 @@ def children(operator, parents, genes, mixing=EVEN, probability=0.0, half=0, cli
     ("fitter", "other", "child"),
     [(10, 20, 12), (20, 10, 18), (0, 1, 0), (0, 2, 0), (0, 3, 1), (-1, 1, -1), (-10, 7, -7)],
 )
-def test_crossover_by_hand(operator, fitter, other, child):
+def test_crossover_by_hand(way, fitter, other, child):
     """0.8 of the fitter parent and 0.2 of the other, rounded to the nearest: eq. (6)."""
-    found = children(operator, [[fitter] * 8, [other] * 8], 8)
+    found = children(way, [[fitter] * 8, [other] * 8], 8)
     assert found.tolist() == [child] * 4
 
 
-def test_mutation_changes_inner_genes_by_at_most_half_the_smaller_side(operator):
+def test_mutation_changes_inner_genes_by_at_most_half_the_smaller_side(way):
     same = [[50, 25] * 16] * 2
     change = np.array(
-        [children(operator, same, 32, probability=0.4, half=25, seed=s) for s in range(600)]
+        [children(way, same, 32, probability=0.4, half=25, seed=s) for s in range(600)]
     ) - ([50, 25] * 14)
     assert (change.min(), change.max()) == (-25, 25)
     assert (change != 0).mean() == pytest.approx(0.4 * 50 / 51, abs=0.015)
     assert change.mean() == pytest.approx(0, abs=0.3)
 
 
-def test_clipping_moves_genes_to_the_border(operator):
+def test_clipping_moves_genes_to_the_border(way):
     ends = [[99, 49] * 4] * 2
     for seed in range(50):
-        found = children(operator, ends, 8, probability=1.0, half=25, clip=True, seed=seed)
+        found = children(way, ends, 8, probability=1.0, half=25, clip=True, seed=seed)
         assert (found[0::2] < COLS).all() and (found[1::2] < ROWS).all()
 
 
@@ -154,12 +154,11 @@ def test_many_genes_at_once_are_as_one_by_one(k, fraction, probability, upper, f
     )
     threshold = probability_threshold(probability)
     found = []
-    for operator in (vary, vary_one_by_one):
+    for way in WAYS:
         made = np.full((3, columns), -7, dtype=np.int32)
-        operator(
-            parents, 1, 3, mixing, drawn, 2, 32 * upper, threshold, changes, box, made, 1, genes
-        )
+        given = drawn, 2, 32 * upper, threshold, changes, box, made, 1, genes
+        vary(way, parents, 1, 3, mixing, *given)
         assert (made[0] == -7).all() and (made[2] == -7).all()
         assert (made[1, :2] == -7).all()
         found.append(made[1, 2 : genes - 2].tolist())
-    assert found[0] == found[1]
+    assert found[0] == found[-1]

@@ -126,7 +126,7 @@ FLOOR = Problem(GridMap("floor", np.full((30, 20), 0.5)), (0, 0), (19, 29))
 
 
 def run(lengths, planner, genes, keys):
-    return run_evolution(lengths, genes, planner._settings(FLOOR, 1), stream(*keys))
+    return run_evolution(lengths, genes, planner.kernel_settings(FLOOR, 1), stream(*keys))
 
 
 def same_as_twin(planner, lengths, genes, keys):
@@ -171,7 +171,7 @@ def test_generations_of_table_1_equal_the_naive_twin(profile, reading, genes):
 def test_a_place_on_the_wheel_is_as_wide_as_its_fitness_says():
     """So many spins that some balls lie just at the border of two places."""
     parents, pixels = 300_000, np.array([2, 0, 3, 3])
-    settings = ga(elite_portion=0.0)._settings(FLOOR, 1)
+    settings = ga(elite_portion=0.0).kernel_settings(FLOOR, 1)
     settings["parents"] = parents
     scores = pixels * SCALE
     keys = np.sort((scores << INDEX_BITS) + np.arange(4))
