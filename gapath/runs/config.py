@@ -41,6 +41,8 @@ class Root:
         Run again what is there already.
     threads : int
         Threads that do the trials of a run, if the task has any use for them.
+    kernels : str
+        Which kernels compute: "auto", or a name that the task's planner knows.
     """
 
     task: str
@@ -53,9 +55,10 @@ class Root:
     output: str
     force: bool
     threads: int
+    kernels: str
 
 
-HOW = ("output", "force", "threads")
+HOW = ("output", "force", "threads", "kernels")
 """Settings of how to run, which change no result: no part of a run's settings."""
 
 
@@ -146,6 +149,8 @@ def make_run(config: DictConfig, choices: Mapping[str, str | None]) -> Run:
         build("recorder", values, f"recorder.{name}") for name, values in root.recorder.items()
     ]
     problem, made = read_problem(root), task.make(settings)
+    if root.kernels != "auto":
+        made = made.using(root.kernels)
     made.check(problem)
     for recorder in recorders:
         recorder.check(root.trials)

@@ -1,0 +1,80 @@
+"""Settings as data: flat and nested again, as text and back."""
+
+import pytest
+import yaml
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gapath.errors import InputError
+from gapath.store.settings import flatten, nested, of_text, read_settings, text_of
+
+names = st.from_regex(r"[a-z_]{1,6}", fullmatch=True)
+values = (
+    st.none()
+    | st.booleans()
+    | st.integers()
+    | st.floats(allow_nan=False, allow_infinity=False)
+    | st.text(max_size=8)
+)
+trees = st.recursive(
+    values, lambda part: st.lists(part, max_size=3) | st.dictionaries(names, part, max_size=3)
+)
+
+
+@given(st.dictionaries(names, trees, max_size=4))
+def test_flat_settings_become_the_nested_ones_again(tree):
+    assert nested(flatten(tree)) == tree
+
+
+@given(st.dictionaries(names, trees, max_size=4))
+def test_text_and_yaml_give_the_settings_back(tree):
+    flat = flatten(tree)
+    assert of_text(text_of(flat)) == flat
+
+
+def test_names_by_hand():
+    tree = {"map": {"start": [3, 4]}, "replan": [{"base": "ga3"}, {}], "choice": [], "x": None}
+    assert flatten(tree) == {
+        "map.start[0]": 3,
+        "map.start[1]": 4,
+        "replan[0].base": "ga3",
+        "replan[1].": None,
+        "choice[]": None,
+        "x": None,
+    }
+    assert text_of({"planner.population": 80, "name": "a: b"}) == (
+        'planner.population: 80\nname: "a: b"\n'
+    )
+
+
+def test_the_text_is_yaml():
+    flat = {"a.b": 1, "a.c[0]": "x: y\n#", "d": None, "e": True, "f": 0.5}
+    assert yaml.safe_load(text_of(flat)) == flat
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["planner", "a: [1, 2]", "a: {}", "a: !!python/name:os.system", "a: ${oc.env:HOME}", "a: &b 1",
+     "a: 1\na: 2"],
+)  # fmt: skip
+def test_text_that_is_no_plain_setting_is_refused(text):
+    with pytest.raises(InputError, match="expected name: value"):
+        of_text(text)
+
+
+@pytest.mark.parametrize(
+    "flat",
+    [{"a[1]": 1}, {"a": 1, "a.b": 2}, {"a.b": 1, "a[0]": 2}, {"a..b": 1}, {"": 1}, {"a[x]": 1},
+     {"a[0]": 1, "a[2]": 2}],
+)  # fmt: skip
+def test_names_that_do_not_fit_are_refused(flat):
+    with pytest.raises(InputError):
+        nested(flat)
+
+
+@pytest.mark.parametrize("content", ["- 1\n", "a: !!python/name:os.system\n", "a: 2020-01-01\n"])
+def test_a_configuration_that_is_none_is_refused(content, tmp_path):
+    path = tmp_path / "config.yaml"
+    path.write_text(content)
+    with pytest.raises(InputError):
+        read_settings(path)
