@@ -41,8 +41,8 @@ test: $(VENV)/ready ## run all tests
 
 # Nothing sees into a compiled kernel, so the tests of kernels run once more without the compiler:
 # some two minutes. test_evaluation would take many more, as would planners and drives, whose kernels
-# a test of test_golden runs without it. What only the compiler understands (vectors, lanes and the
-# half of evaluation that uses them) counts as missed.
+# a test of test_golden runs without it. Kernels on vectors, which only the compiler understands,
+# count as missed: most of evaluation.
 .PHONY: coverage
 coverage: $(VENV)/ready ## measure which lines the tests run; into build/coverage (about ten minutes)
 	@$(BIN)/coverage erase
