@@ -1,7 +1,8 @@
 """KG18's fitness of many chromosomes: `gapath.kernels.kg18.fitness.fitness`, but faster.
 
-Way points and lines of a few chromosomes side by side, then, chromosome by chromosome, the
-places of the fields on its lines and the sum of what stands there (`gapath.kernels.kg18.lanes`).
+Way points and lines of a few chromosomes side by side (`gapath.kernels.kg18.lanes`), then,
+chromosome by chromosome, the places of the fields on its lines and the sum of what stands there
+(`gapath.kernels.kg18.field_lanes`).
 """
 
 from typing import NamedTuple
@@ -11,23 +12,19 @@ from numpy.typing import NDArray
 
 from gapath.kernels.jit import kernel
 from gapath.kernels.kg18.bspline import Basis
+from gapath.kernels.kg18.field_lanes import FIELDS, FRACTION, READ, store_fields, sum_entries
 from gapath.kernels.kg18.fitness import fitness
 from gapath.kernels.kg18.lanes import (
     ACROSS,
     ALONG,
     BASE,
     CHROMOSOMES,
-    FIELDS,
-    FRACTION,
     LINE,
-    READ,
     SLOPE,
     STEPS,
     Way,
     join_way_points,
     place_way_points,
-    store_fields,
-    sum_entries,
     turn,
 )
 from gapath.kernels.lines import (
