@@ -85,7 +85,7 @@ def bound(heuristic: Heuristic, x: int, y: int) -> int:
     return (cost << LENGTH_BITS) + length(x - u, y - v)
 
 
-@kernel
+@kernel(inner=True)
 def key_of(search: Search, heuristic: Heuristic, place: int) -> tuple[int, int]:
     """Give the two numbers by which the queue is ordered."""
     cols = search.table.shape[1]
@@ -94,7 +94,7 @@ def key_of(search: Search, heuristic: Heuristic, place: int) -> tuple[int, int]:
     return cost + bound(heuristic, place - y * cols, y) + heuristic.offset, cost
 
 
-@kernel
+@kernel(inner=True)
 def comes_before(search: Search, a: int, b: int) -> bool:
     """Compare two queued fields."""
     first, second = search.keys[a, 0], search.keys[b, 0]
@@ -103,7 +103,7 @@ def comes_before(search: Search, a: int, b: int) -> bool:
     return bool(search.keys[a, 1] < search.keys[b, 1])
 
 
-@kernel
+@kernel(inner=True)
 def sift(search: Search, size: int, at: int) -> None:
     """Move the field at a heap index up or down to where its key belongs."""
     queue, position = search.queue, search.position
@@ -146,7 +146,7 @@ def update(search: Search, heuristic: Heuristic, size: int, place: int) -> int:
     return size
 
 
-@kernel
+@kernel(inner=True)
 def step_cost(search: Search, x0: int, y0: int, step: int) -> int:
     """Give the cost of a step from a field, NO_PATH if it is impossible."""
     table = search.table
@@ -161,7 +161,7 @@ def step_cost(search: Search, x0: int, y0: int, step: int) -> int:
     return (weight << LENGTH_BITS) + (2 if step < 4 else 3)
 
 
-@kernel
+@kernel(inner=True)
 def look_ahead(search: Search, x: int, y: int) -> tuple[int, int]:
     """Give the least cost to the target by one step and what g says there, and that step."""
     if (x, y) == search.target:
@@ -200,7 +200,7 @@ def requeue(search: Search, heuristic: Heuristic, size: int) -> None:
         sift(search, i + 1, i)
 
 
-@kernel
+@kernel(inner=True)
 def take_over(
     search: Search,
     heuristic: Heuristic,
@@ -223,7 +223,7 @@ def take_over(
     return size
 
 
-@kernel
+@kernel(inner=True)
 def settle(search: Search, heuristic: Heuristic, size: int) -> tuple[int, int]:
     """Expand fields until the robot's cost is exact; give the queue's size and their number."""
     g, rhs, keys = search.g, search.rhs, search.keys

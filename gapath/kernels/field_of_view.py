@@ -44,7 +44,7 @@ def heading_of(dx: int, dy: int) -> int:
     return 0
 
 
-@kernel
+@kernel(inner=True)
 def is_seen(table: NDArray[np.int32], x0: int, y0: int, x1: int, y1: int) -> bool:
     """Tell whether a straight line reaches a field without crossing an obstacle before it."""
     n = max(abs(x1 - x0), abs(y1 - y0))

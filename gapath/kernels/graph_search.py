@@ -31,7 +31,7 @@ STATE_BITS = 4
 start; negative once the field is settled, 0 as long as it is unseen."""
 
 
-@kernel
+@kernel(inner=True)
 def bucket_of(priority: int, last: int) -> int:
     """Give the number of bits from the highest on in which two priorities differ."""
     difference = np.uint64(priority ^ last)
@@ -42,7 +42,7 @@ def bucket_of(priority: int, last: int) -> int:
     return bits
 
 
-@kernel
+@kernel(inner=True)
 def refill(items: NDArray[np.int64], firsts: NDArray[np.int64]) -> int:
     """Move the items of the lowest bucket that has any to where the least of them is the last.
 

@@ -82,7 +82,7 @@ def cuts_corner(table: NDArray[np.int32], x0: int, y0: int, x1: int, y1: int, ru
     return (first and second) or (rule == FORBID and (first or second))
 
 
-@kernel
+@kernel(inner=True)
 def steps_inside(position: int, slope_: int, side: int, n: int) -> tuple[int, int]:
     """Find the steps at which a line is on the map along one axis.
 
@@ -159,7 +159,7 @@ def line_key(table: NDArray[np.int32], x0: int, y0: int, x1: int, y1: int, rule:
     return (obstacles << KEY_BITS) + cost
 
 
-@kernel
+@kernel(inner=True)
 def corners_cut(
     table: NDArray[np.int32], x: int, y: int, slope_x: int, slope_y: int, n: int, rule: int
 ) -> int:

@@ -1,7 +1,8 @@
 """KG18's fitness of many chromosomes: `gapath.kernels.kg18.fitness.fitness`, but faster.
 
-Way points and lines of a few chromosomes side by side, then, chromosome by chromosome, the
-places of the fields on its lines and the sum of what stands there (`gapath.kernels.kg18.lanes`).
+Way points and lines of a few chromosomes side by side (`gapath.kernels.kg18.lanes`), then,
+chromosome by chromosome, the places of the fields on its lines and the sum of what stands there
+(`gapath.kernels.kg18.field_lanes`).
 """
 
 from typing import NamedTuple
@@ -11,23 +12,19 @@ from numpy.typing import NDArray
 
 from gapath.kernels.jit import kernel
 from gapath.kernels.kg18.bspline import Basis
+from gapath.kernels.kg18.field_lanes import FIELDS, FRACTION, READ, store_fields, sum_entries
 from gapath.kernels.kg18.fitness import fitness
 from gapath.kernels.kg18.lanes import (
     ACROSS,
     ALONG,
     BASE,
     CHROMOSOMES,
-    FIELDS,
-    FRACTION,
     LINE,
-    READ,
     SLOPE,
     STEPS,
     Way,
     join_way_points,
     place_way_points,
-    store_fields,
-    sum_entries,
     turn,
 )
 from gapath.kernels.lines import (
@@ -88,7 +85,7 @@ def workspace(basis: Basis) -> Workspace:
     )
 
 
-@kernel
+@kernel(inner=True)
 def _place(
     chromosomes: NDArray[np.int32],
     first: int,
@@ -121,7 +118,7 @@ def _place(
         join_way_points(memory.points, j, memory.lines, memory.slopes, rows, cols)
 
 
-@kernel
+@kernel(inner=True)
 def _line(memory: Workspace, j: int, i: int) -> tuple[int, int, int, int, int]:
     """Give the ends of line j of chromosome i, and its steps."""
     at = 2 * j * CHROMOSOMES + i
@@ -131,7 +128,7 @@ def _line(memory: Workspace, j: int, i: int) -> tuple[int, int, int, int, int]:
     return x0, y0, x1, y1, max(abs(x1 - x0), abs(y1 - y0))
 
 
-@kernel
+@kernel(inner=True)
 def _across(memory: Workspace, j: int, i: int) -> int:
     """Give the slope across of line j of chromosome i, with `SHIFT` fractional bits.
 
@@ -142,7 +139,7 @@ def _across(memory: Workspace, j: int, i: int) -> int:
     return np.int64(positive) - (2 << SHIFT) + 1
 
 
-@kernel
+@kernel(inner=True)
 def _add_line(
     flat: NDArray[np.int32], rows: int, cols: int, memory: Workspace, j: int, i: int, at: int
 ) -> tuple[int, int, int]:
@@ -188,7 +185,7 @@ def _add_line(
     return obstacles, cost, at
 
 
-@kernel
+@kernel(inner=True)
 def _corners(table: NDArray[np.int32], memory: Workspace, lines: int, i: int, rule: int) -> int:
     """Count the steps of chromosome i that break the corner-cutting rule, one by one."""
     count = 0

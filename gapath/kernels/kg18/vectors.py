@@ -1,7 +1,8 @@
 """Vectors as LLVM's intermediate language computes them, written as formulas.
 
-A function of `gapath.kernels.kg18.lanes` gives its code as operations on `Vector`; `Code` reads its
-arguments, which are numbers and arrays. Arrays have to be contiguous: their strides are not read.
+A function of `gapath.kernels.kg18.lanes` or `gapath.kernels.kg18.field_lanes` gives its code as
+operations on `Vector`; `Code` reads its arguments, which are numbers and arrays.
+Arrays have to be contiguous: their strides are not read.
 """
 
 from typing import Any

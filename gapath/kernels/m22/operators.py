@@ -73,7 +73,7 @@ def select(
         chosen_scores[i] = scores[keys[place] & mask]
 
 
-@kernel
+@kernel(inner=True)
 def choose_breeders(
     setting: NDArray[np.void],
     stream: Stream,
@@ -120,7 +120,7 @@ def choose_breeders(
     return count
 
 
-@kernel
+@kernel(inner=True)
 def cross_and_mutate(
     population: NDArray[np.int32],
     a: int,

@@ -249,7 +249,7 @@ def measure(
             measures.keys[p] += run(sums.cols, walk.ends[2, p], walk.ends[3, p])
 
 
-@kernel
+@kernel(inner=True)
 def _place(chromosomes: Chromosomes, i: int, walk: Walk) -> None:
     """Place vertex i of every path, which is not the last."""
     first, second = chromosomes.switch[0], chromosomes.switch[1]
@@ -263,7 +263,7 @@ def _place(chromosomes: Chromosomes, i: int, walk: Walk) -> None:
         v[p] = location[p] if mode else i
 
 
-@kernel
+@kernel(inner=True)
 def _join(direction: NDArray[np.int32], stride: int, measures: Measures, walk: Walk) -> None:
     """Join every path's vertex to the next by an L: its length, turns and fields."""
     here_x, here_y, there_x, there_y = walk.here[0], walk.here[1], walk.there[0], walk.there[1]
@@ -289,7 +289,7 @@ def _join(direction: NDArray[np.int32], stride: int, measures: Measures, walk: W
         here_x[p], here_y[p] = u, v
 
 
-@kernel
+@kernel(inner=True)
 def _turned(before: int, now: int) -> int:
     """Count a turn if both headings are some and differ."""
     return np.int32(before != 0) & np.int32(now != 0) & np.int32(before != now)

@@ -73,7 +73,7 @@ def rank(values: NDArray[np.float64], order: NDArray[np.int64], spare: NDArray[n
         run *= 2
 
 
-@kernel
+@kernel(inner=True)
 def _merge(
     values: NDArray[np.float64],
     order: NDArray[np.int64],

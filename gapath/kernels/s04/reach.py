@@ -15,7 +15,7 @@ from gapath.kernels.s04.genotype import HORIZONTAL, Genotype, Sums, run
 UNREACHED = -1
 
 
-@kernel
+@kernel(inner=True)
 def is_free(sums: Sums, n: int, x: int, y: int, u: int, v: int, direction: int) -> bool:
     """Tell whether the L from (x, y), left out, to (u, v), included, meets no obstacle."""
     row = (y if direction == HORIZONTAL else v) * (n + 1) + (u > x)

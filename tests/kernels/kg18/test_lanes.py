@@ -7,23 +7,19 @@ from hypothesis import strategies as st
 
 from gapath.kernels.jit import JIT, kernel
 from gapath.kernels.kg18.bspline import basis, way_point
+from gapath.kernels.kg18.field_lanes import FIELDS, FRACTION, READ, store_fields, sum_entries
 from gapath.kernels.kg18.lanes import (
     ACROSS,
     ALONG,
     BASE,
     CHROMOSOMES,
-    FIELDS,
-    FRACTION,
     GENES,
     LINE,
-    READ,
     SLOPE,
     STEPS,
     chromosome_matrix,
     join_way_points,
     place_way_points,
-    store_fields,
-    sum_entries,
     turn,
     width,
 )
