@@ -10,6 +10,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    __version__: str
     from gapath.api import load_map, plan
     from gapath.errors import InputError
     from gapath.grid import GridMap
@@ -22,6 +23,7 @@ __all__ = [
     "Plan",
     "PlanStatus",
     "Problem",
+    "__version__",
     "load_map",
     "plan",
 ]
@@ -40,6 +42,10 @@ _HOMES = {
 
 def __getattr__(name: str) -> object:
     """Import a public name when it is first used: numba alone takes half a second."""
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("gapath")
     if name not in _HOMES:
         raise AttributeError(f"module 'gapath' has no attribute {name!r}")
     return getattr(import_module(f"gapath.{_HOMES[name]}"), name)

@@ -242,7 +242,7 @@ def yaml_values(group: str, name: str) -> dict[str, Any]:
 
 
 def _all_entry_points() -> list[metadata.EntryPoint]:
-    groups = (*PACKAGES.values(), "gapath.conf", "gapath.tables")
+    groups = (*PACKAGES.values(), "gapath.conf", "gapath.pipelines")
     return [entry for group in groups for entry in entry_points(group).values()]
 
 

@@ -3,12 +3,10 @@
 import re
 import runpy
 import shlex
-import shutil
 from importlib import import_module
 from pathlib import Path
 
 import pytest
-import test_contract
 import yaml
 from hydra import compose, initialize_config_dir
 from hydra._internal.core_plugins.basic_sweeper import BasicSweeper
@@ -16,12 +14,10 @@ from hydra._internal.utils import get_args_parser
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from omegaconf import OmegaConf
 
-import gapath.planners
 from gapath import components
 from gapath.commands import log as log_cli
 from gapath.commands import run as cli
 from gapath.pipelines.report import cli as report_cli
-from gapath.problem import CornerCutting
 from gapath.runs import config
 from gapath.task import find_task
 
@@ -226,7 +222,7 @@ def check_gapath(words):
 
 
 CHECKS = {"gapath": check_gapath, "gapath-log": check_log, "gapath-report": check_report}
-EXAMPLE = "planner=one_bend"  # in CONTRIBUTING.md; it has a test of its own
+EXAMPLE = "planner=one_bend"  # of tests/plugin, which has tests of its own
 
 
 @each_page
@@ -252,44 +248,6 @@ def test_the_library_example_of_the_readme_runs(tmp_path, capfd):
     (tmp_path / "example.py").write_text(example)
     runpy.run_path(str(tmp_path / "example.py"))
     assert "a feasible path was found" in capfd.readouterr().out
-
-
-@pytest.fixture
-def one_bend(tmp_path, monkeypatch):
-    """Write the two files of CONTRIBUTING.md's planner into an overlay of the package."""
-    text = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
-    module, settings = tmp_path / "planners" / "one_bend.py", tmp_path / "conf" / "planner"
-    shutil.copytree(ROOT / "conf", tmp_path / "conf")
-    module.parent.mkdir()
-    (code,), (values,) = blocks(text, "python"), blocks(text, "yaml")
-    module.write_text(code)
-    (settings / "one_bend.yaml").write_text(values)
-    overlay = [*gapath.planners.__path__, str(module.parent)]
-    monkeypatch.setattr(gapath.planners, "__path__", overlay)
-    monkeypatch.setattr(cli, "conf_folder", lambda: str(tmp_path / "conf"))
-    monkeypatch.setattr(
-        test_contract,
-        "make_planner",
-        lambda name: components.build("planner", yaml.safe_load(values), "planner"),
-    )
-    return "one_bend"
-
-
-def test_the_planner_of_the_guide_keeps_the_contract(one_bend):
-    for rule in CornerCutting:
-        test_contract.test_planners_give_paths_that_are_paths(one_bend, rule)
-    test_contract.test_planners_give_the_same_plan_for_the_same_stream(one_bend)
-    test_contract.test_a_walled_in_target_is_infeasible(one_bend)
-    test_contract.test_an_evolution_tells_its_epochs(one_bend)
-
-
-def test_the_planner_of_the_guide_runs_and_is_reproduced(one_bend, tmp_path, monkeypatch, capfd):
-    arguments = ["map=kg18_test1", f"planner={one_bend}", "planner.tries=500", "recorder=mcap"]
-    monkeypatch.setattr("sys.argv", ["gapath", *arguments, f"output={tmp_path / 'out'}"])
-    cli.main()
-    assert "status        found" in capfd.readouterr().out
-    (log,) = tmp_path.glob("out/plan/*/run.mcap")
-    assert log_cli.main(["verify", str(log)]) == 0
 
 
 def test_the_examples_of_the_log_page_read_a_log(tmp_path, monkeypatch, capfd):
