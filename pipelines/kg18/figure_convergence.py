@@ -7,15 +7,15 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from gapath.errors import InputError
 from gapath.events import Evolved
 from gapath.pipelines.numbers.statistics import by_epoch
 from gapath.pipelines.numbers.text import number
 from gapath.pipelines.page.figures import legend, looks, panels, render, style
 from gapath.pipelines.page.section import Figure, Section
 from gapath.pipelines.papers.names import label, rank
-from gapath.pipelines.reading.runs import Run
-from gapath.recorders.mcap import FILE, read_events
+from gapath.pipelines.reading.logs import events_of, has_log, read_logs
+from gapath.recorders.mcap import FILE
+from gapath.store.records import RunRecord
 
 TASK = "plan"
 EXPERIMENT = "table1"
@@ -25,14 +25,14 @@ Curves = dict[tuple[str, str], list[NDArray[np.float64]]]
 """For each map and planner the best fitness by epoch, an array a trial."""
 
 
-def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
+def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
     """Draw the best fitness by epoch.
 
     Parameters
     ----------
     trials : DataFrame
         The trials of the experiment.
-    runs : sequence of Run
+    runs : sequence of RunRecord
         The runs they come from, with their logs.
 
     Returns
@@ -41,25 +41,21 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
         One figure with a panel a map; None if no run has a log of a genetic algorithm.
     """
     curves: Curves = defaultdict(list)
-    skipped = []
     # Logs without epochs are not opened: those of Dijkstra hold nothing to draw.
     evolving = set(trials.loc[trials["epochs"] > 0, "key"])
-    for run in runs:
-        if run.folder.name not in evolving:
-            continue
-        if FILE not in run.manifest["files"]:
-            skipped.append((run.name, f"no log {FILE}"))
-            continue
-        try:
-            events = read_events(run.folder / FILE)
-            best = [event.evolution.best for event in events if isinstance(event, Evolved)]
-        except InputError as error:
-            skipped.append((run.name, str(error)))
-        else:
-            curves[run.manifest["map"], run.manifest["planner"]] += best
+    runs = [run for run in runs if run.folder.name in evolving]
+    read, damaged = read_logs(runs, read_curves)
+    for run, best in read:
+        curves[run.known.map, run.known.method] += best
+    bare = [(run.name, f"no log {FILE}") for run in runs if not has_log(run)]
     sources = dict(trials[["map", "map_source"]].drop_duplicates("map").to_numpy())
     figures = (_figure(curves, sources),) if curves else ()
-    return Section(title="Convergence", figures=figures, skipped=tuple(skipped))
+    return Section(title="Convergence", figures=figures, skipped=(*bare, *damaged))
+
+
+def read_curves(run: RunRecord) -> list[NDArray[np.float64]]:
+    """Read the best fitness by epoch of each trial from a run's log."""
+    return [event.evolution.best for event in events_of(run) if isinstance(event, Evolved)]
 
 
 def _figure(curves: Curves, sources: dict[str, str]) -> Figure:

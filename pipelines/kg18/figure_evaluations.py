@@ -9,21 +9,21 @@ from gapath.pipelines.numbers.text import percent
 from gapath.pipelines.page.figures import legend, looks, panels, render, style
 from gapath.pipelines.page.section import Figure, Section
 from gapath.pipelines.papers.names import label, rank
-from gapath.pipelines.reading.runs import Run
+from gapath.store.records import RunRecord
 
 TASK = "plan"
 EXPERIMENT = "table1"
 ORDER = 40
 
 
-def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
+def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
     """Draw the distribution of evaluations to a feasible path.
 
     Parameters
     ----------
     trials : DataFrame
         The trials of the experiment.
-    runs : sequence of Run
+    runs : sequence of RunRecord
         The runs they come from.
 
     Returns

@@ -11,16 +11,14 @@ from matplotlib.figure import Figure as Canvas
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from gapath.errors import InputError
 from gapath.events import Event, RunStarted, TrialFinished
 from gapath.pipelines.numbers.text import number
 from gapath.pipelines.page.figures import WIDTH, Look, looks, render, style
 from gapath.pipelines.page.map_picture import draw_map, mark_ends
 from gapath.pipelines.page.section import RECONSTRUCTED, Figure, Section
 from gapath.pipelines.papers.names import label, rank
-from gapath.pipelines.reading.logs import run_start
-from gapath.pipelines.reading.runs import Run
-from gapath.recorders.mcap import FILE, read_events
+from gapath.pipelines.reading.logs import events_of, read_logs, run_start
+from gapath.store.records import RunRecord
 
 TASK = "plan"
 EXPERIMENT = "table1"
@@ -31,21 +29,21 @@ EXAMPLES = 3
 
 
 @dataclass(frozen=True, eq=False)
-class Example:
+class Found:
     """What a log says about one run: its problem, the optimal path, the first paths found."""
 
     start: RunStarted
     paths: list[NDArray[np.int32]]
 
 
-def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
+def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
     """Draw each map with example paths.
 
     Parameters
     ----------
     trials : DataFrame
         The trials of the experiment.
-    runs : sequence of Run
+    runs : sequence of RunRecord
         The runs they come from, with their logs.
 
     Returns
@@ -53,17 +51,12 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
     Section or None
         A figure a map; None if no run has a log of a genetic algorithm.
     """
-    examples: dict[str, dict[str, Example]] = defaultdict(dict)
-    skipped = []
+    examples: dict[str, dict[str, Found]] = defaultdict(dict)
     evolving = set(trials.loc[(trials["epochs"] > 0) & (trials["map_instance"] == 0), "key"])
-    for run in runs:
-        if run.folder.name in evolving and FILE in run.manifest["files"]:
-            try:
-                example = read_example(read_events(run.folder / FILE))
-            except InputError as error:
-                skipped.append((run.name, str(error)))
-            else:
-                examples[run.manifest["map"]].setdefault(run.manifest["planner"], example)
+    runs = [run for run in runs if run.folder.name in evolving]
+    read, skipped = read_logs(runs, lambda run: read_found(events_of(run)))
+    for run, example in read:
+        examples[run.known.map].setdefault(run.known.method, example)
     look = looks(trials.loc[trials["epochs"] > 0, "planner"])
     figures = tuple(_figure(examples[name], look) for name in sorted(examples, key=rank))
     if not figures and not skipped:
@@ -80,7 +73,7 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
     )
 
 
-def read_example(events: Iterator[Event]) -> Example:
+def read_found(events: Iterator[Event]) -> Found:
     """Read a log until enough paths were found.
 
     Parameters
@@ -90,7 +83,7 @@ def read_example(events: Iterator[Event]) -> Example:
 
     Returns
     -------
-    Example
+    Found
         The run's start, and the paths of its first trials that found one.
 
     Raises
@@ -101,14 +94,14 @@ def read_example(events: Iterator[Event]) -> Example:
     start = run_start(events)
     paths: list[NDArray[np.int32]] = []
     for event in events:
-        if isinstance(event, TrialFinished) and len(event.path):
-            paths.append(event.path)
+        if isinstance(event, TrialFinished) and event.answer.feasible:
+            paths.append(event.answer.path)
             if len(paths) == EXAMPLES:
                 break
-    return Example(start, paths)
+    return Found(start, paths)
 
 
-def _figure(examples: dict[str, Example], look: dict[str, Look]) -> Figure:
+def _figure(examples: dict[str, Found], look: dict[str, Look]) -> Figure:
     start = next(iter(examples.values())).start
     grid = start.problem.map
     title = label(grid.name, grid.source)

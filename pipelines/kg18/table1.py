@@ -9,7 +9,7 @@ from gapath.pipelines.numbers.text import NOTHING, middle, number, percent, perc
 from gapath.pipelines.page.section import RECONSTRUCTED, Section, Table
 from gapath.pipelines.papers.kg18 import SECONDS, found_seconds, implied_epochs
 from gapath.pipelines.papers.names import label
-from gapath.pipelines.reading.runs import Run
+from gapath.store.records import RunRecord
 
 TASK = "plan"
 EXPERIMENT = "table1"
@@ -23,14 +23,14 @@ _EFFORT: dict[str, tuple[str, Callable[[float], float]]] = {
 """The column of each quantity, and its number there."""
 
 
-def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
+def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
     """Make the section of KG18 Table 1.
 
     Parameters
     ----------
     trials : DataFrame
         The trials of the experiment.
-    runs : sequence of Run
+    runs : sequence of RunRecord
         The runs they come from.
 
     Returns

@@ -4,26 +4,25 @@ from collections.abc import Sequence
 
 import pandas as pd
 
-from gapath.pipelines.numbers.statistics import wilson
-from gapath.pipelines.numbers.summary import summarise
+from gapath.pipelines.numbers.summary import over_instances, summarise, summarise_by
 from gapath.pipelines.numbers.text import middle, number, percent, percent_range
 from gapath.pipelines.page.section import RECONSTRUCTED, Section, Table
-from gapath.pipelines.papers.names import label, rank
-from gapath.pipelines.reading.runs import Run
+from gapath.pipelines.papers.names import label
+from gapath.store.records import RunRecord
 
 TASK = "plan"
 EXPERIMENT = "classes"
 ORDER = 20
 
 
-def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
+def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
     """Make the section on the classes of KG18's known maps.
 
     Parameters
     ----------
     trials : DataFrame
         The trials of the experiment.
-    runs : sequence of Run
+    runs : sequence of RunRecord
         The runs they come from.
 
     Returns
@@ -31,7 +30,7 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
     Section
         Success and epochs over the instances of each class.
     """
-    rows = over_instances(trials)
+    rows = summarise_by(trials, ["map", "map_source", "planner"], summarise_class)
     return Section(
         title="The same over classes of maps",
         text=(
@@ -48,8 +47,8 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
     )
 
 
-def over_instances(trials: pd.DataFrame) -> pd.DataFrame:
-    """Summarise each class of maps and planner over the class's instances.
+def summarise_class(trials: pd.DataFrame) -> dict[str, float]:
+    """Summarise a planner's trials over the instances of a class.
 
     Parameters
     ----------
@@ -58,32 +57,12 @@ def over_instances(trials: pd.DataFrame) -> pd.DataFrame:
 
     Returns
     -------
-    DataFrame
-        map, map_source, planner, instances, n (trials), success (the mean of the instances'
-        rates) and its interval over instances, how many instances were always or never
-        solved, quartiles of the epochs.
+    dict
+        What `over_instances` gives, success being the rate; quartiles of the epochs.
     """
-    by = ["map", "map_source", "planner"]
-    rows = []
-    for key, group in trials.groupby(by):
-        rates = group.groupby("map_instance")["feasible"].mean()
-        low, high = wilson(float(rates.mean()), len(rates))
-        row = summarise(group)
-        rows.append(
-            {
-                **dict(zip(by, key, strict=True)),
-                "instances": len(rates),
-                "n": len(group),
-                "success": rates.mean(),
-                "success_low": low,
-                "success_high": high,
-                "always": int((rates == 1).sum()),
-                "never": int((rates == 0).sum()),
-                **{name: row[name] for name in ("epochs_median", "epochs_q1", "epochs_q3")},
-            }
-        )
-    rows.sort(key=lambda row: [rank(str(row[name])) for name in by])
-    return pd.DataFrame(rows)
+    row = summarise(trials)
+    epochs = {name: row[name] for name in ("epochs_median", "epochs_q1", "epochs_q3")}
+    return over_instances(trials, "feasible", "success") | epochs
 
 
 def _table(rows: pd.DataFrame) -> Table:

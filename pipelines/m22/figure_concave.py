@@ -4,7 +4,6 @@ from collections.abc import Sequence
 
 import pandas as pd
 
-from gapath.errors import InputError
 from gapath.pipelines.m22.logs import First, read_first
 from gapath.pipelines.numbers.summary import summarise_by
 from gapath.pipelines.numbers.text import number, percent, percent_range
@@ -12,7 +11,8 @@ from gapath.pipelines.page.figures import panels, render, style
 from gapath.pipelines.page.map_picture import draw_lines, draw_picture
 from gapath.pipelines.page.section import Figure, Section, Table
 from gapath.pipelines.papers.names import label, rank
-from gapath.pipelines.reading.runs import Run
+from gapath.pipelines.reading.logs import read_logs
+from gapath.store.records import RunRecord
 
 TASK = "plan"
 EXPERIMENT = "m22_concave"
@@ -21,14 +21,14 @@ ORDER = 96
 DRAWN_WITH = ("visibility_ga", "visibility_ga_corners")
 
 
-def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
+def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
     """Make the section on concave obstacles.
 
     Parameters
     ----------
     trials : DataFrame
         The trials of the experiment.
-    runs : sequence of Run
+    runs : sequence of RunRecord
         The runs they come from, with their logs.
 
     Returns
@@ -37,16 +37,11 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
         How often each planner found a path, and the graphs of both kinds of keypoints.
     """
     graphs: dict[str, First] = {}
-    skipped = []
-    for run in runs:
-        planner = run.manifest["planner"]
-        try:
-            first = read_first(run) if planner in DRAWN_WITH else None
-        except InputError as error:
-            skipped.append((run.name, str(error)))
-        else:
-            if first is not None and first.graph is not None:
-                graphs.setdefault(planner, first)
+    drawn = [run for run in runs if run.known.method in DRAWN_WITH]
+    read, skipped = read_logs(drawn, read_first)
+    for run, first in read:
+        if first.graph is not None:
+            graphs.setdefault(run.known.method, first)
     return Section(
         title="M22: a concave obstacle",
         text=(

@@ -6,15 +6,14 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from gapath.errors import InputError
 from gapath.events import Evolved
 from gapath.pipelines.numbers.statistics import by_epoch
 from gapath.pipelines.numbers.text import number
 from gapath.pipelines.page.figures import looks, panels, render, style
 from gapath.pipelines.page.section import Figure, Section
 from gapath.pipelines.papers.names import label, rank
-from gapath.pipelines.reading.runs import Run
-from gapath.recorders.mcap import FILE, read_events
+from gapath.pipelines.reading.logs import events_of, read_logs
+from gapath.store.records import RunRecord
 
 TASK = "plan"
 EXPERIMENT = "m22"
@@ -26,14 +25,14 @@ Curves = dict[tuple[str, str], list[NDArray[np.float64]]]
 """f by generation of each trial that found a path, by map and planner."""
 
 
-def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
+def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
     """Draw how f falls on every scene.
 
     Parameters
     ----------
     trials : DataFrame
         The trials of the experiment.
-    runs : sequence of Run
+    runs : sequence of RunRecord
         The runs they come from, with their logs.
 
     Returns
@@ -42,21 +41,16 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
         One figure with a panel a planner; None if no run has a log.
     """
     found = set(trials.loc[trials["feasible"], ["key", "trial"]].itertuples(index=False, name=None))
-    curves: Curves = {}
-    skipped = []
-    for run in runs:
-        planner = run.manifest["planner"]
-        if planner not in PLANNERS or FILE not in run.manifest["files"]:
-            continue
-        try:
-            curves[run.manifest["map"], planner] = [
-                event.evolution.best
-                for event in read_events(run.folder / FILE)
-                if isinstance(event, Evolved) and (run.folder.name, event.trial) in found
-            ]
-        except InputError as error:
-            skipped.append((run.name, str(error)))
-    curves = {key: sample for key, sample in curves.items() if sample}
+
+    def read(run: RunRecord) -> list[NDArray[np.float64]]:
+        return [
+            event.evolution.best
+            for event in events_of(run)
+            if isinstance(event, Evolved) and (run.folder.name, event.trial) in found
+        ]
+
+    logs, skipped = read_logs([run for run in runs if run.known.method in PLANNERS], read)
+    curves = {(run.known.map, run.known.method): sample for run, sample in logs if sample}
     if not curves and not skipped:
         return None
     figures = (_figure(curves),) if curves else ()

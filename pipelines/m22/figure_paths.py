@@ -5,14 +5,14 @@ from collections.abc import Sequence
 import pandas as pd
 from matplotlib.lines import Line2D
 
-from gapath.errors import InputError
 from gapath.pipelines.m22.logs import First, read_first
 from gapath.pipelines.m22.table import SCENES
 from gapath.pipelines.page.figures import Look, looks, panels, render, style
 from gapath.pipelines.page.map_picture import draw_picture
 from gapath.pipelines.page.section import Figure, Section
 from gapath.pipelines.papers.names import label, rank
-from gapath.pipelines.reading.runs import Run
+from gapath.pipelines.reading.logs import read_logs
+from gapath.store.records import RunRecord
 
 TASK = "plan"
 EXPERIMENT = "m22"
@@ -23,14 +23,14 @@ PLANNERS = ("visibility_ga", "visibility_ga_unlimited", "visibility_dijkstra_cor
 MAPS_SHOWN = 4
 
 
-def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
+def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
     """Draw paths on the first scenes.
 
     Parameters
     ----------
     trials : DataFrame
         The trials of the experiment.
-    runs : sequence of Run
+    runs : sequence of RunRecord
         The runs they come from, with their logs.
 
     Returns
@@ -40,18 +40,10 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
     """
     names = sorted(trials["map"].unique(), key=rank)[:MAPS_SHOWN]
     found: dict[str, dict[str, First]] = {name: {} for name in names}
-    skipped = []
-    for run in runs:
-        name, planner = run.manifest["map"], run.manifest["planner"]
-        if name not in found or planner not in PLANNERS:
-            continue
-        try:
-            first = read_first(run)
-        except InputError as error:
-            skipped.append((run.name, str(error)))
-        else:
-            if first is not None:
-                found[name][planner] = first
+    drawn = [run for run in runs if run.known.map in found and run.known.method in PLANNERS]
+    read, skipped = read_logs(drawn, read_first)
+    for run, first in read:
+        found[run.known.map][run.known.method] = first
     found = {name: by_planner for name, by_planner in found.items() if by_planner}
     if not found and not skipped:
         return None

@@ -5,28 +5,28 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from gapath.errors import InputError
 from gapath.pipelines.m22.logs import First, read_first
 from gapath.pipelines.page.figures import panels, render, style
 from gapath.pipelines.page.map_picture import LINE, draw_lines, draw_picture
 from gapath.pipelines.page.section import Figure, Section
 from gapath.pipelines.papers.names import label, rank
-from gapath.pipelines.reading.runs import Run
+from gapath.pipelines.reading.logs import read_logs
 from gapath.problem import Graph
+from gapath.store.records import RunRecord
 
 TASK = "plan"
 EXPERIMENT = "m22"
 ORDER = 93
 
 
-def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
+def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
     """Draw the stages of the first scene.
 
     Parameters
     ----------
     trials : DataFrame
         The trials of the experiment.
-    runs : sequence of Run
+    runs : sequence of RunRecord
         The runs they come from, with their logs.
 
     Returns
@@ -34,20 +34,18 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
     Section or None
         One figure; None if no run of the paper's planner has a log.
     """
-    mine = [run for run in runs if run.manifest["planner"] == "visibility_ga"]
-    skipped = []
-    for run in sorted(mine, key=lambda run: rank(run.manifest["map"])):
-        try:
-            first = read_first(run)
-        except InputError as error:
-            skipped.append((run.name, str(error)))
-            continue
-        if first is not None and first.graph is not None:
-            return Section(
-                title="M22's pipeline in pictures",
-                figures=(_figure(first, first.graph),),
-                skipped=tuple(skipped),
-            )
+    mine = [run for run in runs if run.known.method == "visibility_ga"]
+    skipped: list[tuple[str, str]] = []
+    for run in sorted(mine, key=lambda run: rank(run.known.map)):
+        read, damaged = read_logs([run], read_first)
+        skipped += damaged
+        for _, first in read:
+            if first.graph is not None:
+                return Section(
+                    title="M22's pipeline in pictures",
+                    figures=(_figure(first, first.graph),),
+                    skipped=tuple(skipped),
+                )
     return Section("M22's pipeline in pictures", skipped=tuple(skipped)) if skipped else None
 
 

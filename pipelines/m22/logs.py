@@ -6,10 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.events import Evolved, RunStarted, Surveyed, TrialFinished
-from gapath.pipelines.reading.logs import run_start
-from gapath.pipelines.reading.runs import Run
+from gapath.pipelines.reading.logs import events_of, run_start
 from gapath.problem import Graph
-from gapath.recorders.mcap import FILE, read_events
+from gapath.store.records import RunRecord
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,27 +34,25 @@ class First:
     best: NDArray[np.float64]
 
 
-def read_first(run: Run) -> First | None:
+def read_first(run: RunRecord) -> First:
     """Read a run's log up to its first path.
 
     Parameters
     ----------
-    run : Run
-        A run.
+    run : RunRecord
+        A run with a log.
 
     Returns
     -------
-    First or None
-        None if the run has no log.
+    First
+        Its start, and of its trials the first that found one.
 
     Raises
     ------
     InputError
         If the log does not begin with the run's start, or cannot be read.
     """
-    if FILE not in run.manifest["files"]:
-        return None
-    events = read_events(run.folder / FILE)
+    events = events_of(run)
     start, graph = run_start(events), None
     way_points, best = np.empty((0, 2), dtype=np.int32), np.empty(0)
     for event in events:
@@ -63,9 +60,9 @@ def read_first(run: Run) -> First | None:
             graph = event.graph
         elif isinstance(event, Evolved):
             way_points, best = event.evolution.way_points[-1], event.evolution.best
-        elif isinstance(event, TrialFinished) and len(event.path):
+        elif isinstance(event, TrialFinished) and event.answer.feasible:
             if not len(best):  # a search: its path is all there is
-                way_points = event.path
+                way_points = event.answer.path
             return First(start, graph, _once(way_points), best)
     return First(start, graph, np.empty((0, 2), dtype=np.int32), np.empty(0))
 

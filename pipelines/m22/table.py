@@ -13,7 +13,7 @@ from gapath.pipelines.numbers.text import NOTHING, number, percent, percent_rang
 from gapath.pipelines.page.section import Section, Table
 from gapath.pipelines.papers.m22 import EXACT, IMAGE_SHARE, MAPS, PAPER
 from gapath.pipelines.papers.names import label, rank
-from gapath.pipelines.reading.runs import Run
+from gapath.store.records import RunRecord
 
 TASK = "plan"
 EXPERIMENT = "m22"
@@ -27,14 +27,14 @@ SCENES = (
 STAGES = ("resizing", "dilation", "keypoints", "graph", "genetic algorithm", "search", "planning")
 
 
-def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
+def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
     """Make the section on M22's scenes.
 
     Parameters
     ----------
     trials : DataFrame
         The trials of the experiment.
-    runs : sequence of Run
+    runs : sequence of RunRecord
         The runs they come from.
 
     Returns

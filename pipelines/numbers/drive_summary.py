@@ -4,10 +4,9 @@ import numpy as np
 import pandas as pd
 
 from gapath.events import Outcome
-from gapath.pipelines.numbers.statistics import Interval, wilson
+from gapath.pipelines.numbers.statistics import wilson
 from gapath.pipelines.numbers.summary import spread
 from gapath.pipelines.numbers.text import percent, percent_range
-from gapath.pipelines.papers.names import rank
 
 OUTCOMES = tuple(outcome.name.lower() for outcome in Outcome)
 
@@ -48,50 +47,6 @@ def summarise_drives(drives: pd.DataFrame) -> dict[str, float]:
     for name, column in _SPREADS.items():
         row |= {f"{name}_{key}": value for key, value in spread(drives[column])._asdict().items()}
     return row
-
-
-def summarise_drives_by(drives: pd.DataFrame, by: list[str]) -> pd.DataFrame:
-    """Summarise each group of drives, in the paper's order.
-
-    Parameters
-    ----------
-    drives : DataFrame
-        One row a drive.
-    by : list of str
-        The columns that name a group.
-
-    Returns
-    -------
-    DataFrame
-        The columns of `by`, then those of `summarise_drives`.
-    """
-    rows = [
-        {**dict(zip(by, key, strict=True)), **summarise_drives(group)}
-        for key, group in drives.groupby(by, sort=True)
-    ]
-    rows.sort(key=lambda row: [rank(str(row[name])) for name in by])
-    return pd.DataFrame(rows)
-
-
-def over_instances(drives: pd.DataFrame) -> tuple[float, Interval, int]:
-    """Give the rate of drives that reached the target over the instances of a class.
-
-    Parameters
-    ----------
-    drives : DataFrame
-        The drives of one navigator on the instances of one class.
-
-    Returns
-    -------
-    rate : float
-        The mean of the instances' rates.
-    interval : (low, high)
-        Wilson's, counting instances.
-    instances : int
-        Their number.
-    """
-    rates = drives.groupby("map_instance")["reached"].mean()
-    return float(rates.mean()), wilson(float(rates.mean()), len(rates)), len(rates)
 
 
 def rate(row: pd.Series, outcome: str) -> str:

@@ -1,5 +1,6 @@
 """What a group of trials comes to: one row of a table."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -76,7 +77,11 @@ def summarise(trials: pd.DataFrame) -> dict[str, float]:
     return row
 
 
-def summarise_by(trials: pd.DataFrame, by: list[str]) -> pd.DataFrame:
+def summarise_by(
+    trials: pd.DataFrame,
+    by: list[str],
+    summary: Callable[[pd.DataFrame], dict[str, float]] = summarise,
+) -> pd.DataFrame:
     """Summarise each group of trials, in the papers' order.
 
     Parameters
@@ -85,15 +90,49 @@ def summarise_by(trials: pd.DataFrame, by: list[str]) -> pd.DataFrame:
         One row a trial.
     by : list of str
         The columns that name a group.
+    summary : callable
+        Summarises a group.
 
     Returns
     -------
     DataFrame
-        The columns of `by`, then those of `summarise`.
+        The columns of `by`, then those of the summary.
     """
     rows = [
-        {**dict(zip(by, key, strict=True)), **summarise(group)}
+        {**dict(zip(by, key, strict=True)), **summary(group)}
         for key, group in trials.groupby(by, sort=True)
     ]
     rows.sort(key=lambda row: [rank(str(row[name])) for name in by])
     return pd.DataFrame(rows)
+
+
+def over_instances(trials: pd.DataFrame, success: str, name: str) -> dict[str, float]:
+    """Summarise the success of a method over the instances of a class of maps.
+
+    Parameters
+    ----------
+    trials : DataFrame
+        The trials of one method on the instances of one class.
+    success : str
+        The column that says whether a trial succeeded.
+    name : str
+        What the rate is called.
+
+    Returns
+    -------
+    dict
+        instances, n (trials), the rate, which is the mean of the instances' rates, and its
+        interval, Wilson's counting instances; always and never, how many instances succeeded in
+        all trials or in none.
+    """
+    rates = trials.groupby("map_instance")[success].mean()
+    low, high = wilson(float(rates.mean()), len(rates))
+    return {
+        "instances": len(rates),
+        "n": len(trials),
+        name: float(rates.mean()),
+        f"{name}_low": low,
+        f"{name}_high": high,
+        "always": int((rates == 1).sum()),
+        "never": int((rates == 0).sum()),
+    }

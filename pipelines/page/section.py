@@ -1,9 +1,11 @@
 """What a section of the report is made of.
 
-A section is one file of this folder, ``table*.py`` or ``figure_*.py``, that offers
+A section is one file of pipelines, ``table*.py`` or ``figure_*.py``, that offers
 
-- ``TASK``: "plan" or "drive": it sees trials of this task only;
-- ``EXPERIMENT``: the experiment whose trials it wants, or None for those that no other wants;
+- ``TASK``: the name of a task, of whose trials alone it sees any, or `ALL`: it is asked once for
+  each task, whose name the runs tell;
+- ``EXPERIMENT``: the experiment whose trials it wants, None for those that no other wants, or `ALL`
+  for every one;
 - ``ORDER``: its place on the page, a number;
 - ``section(trials, runs)``: a frame of trials and the runs they come from -> `Section`.
 """
@@ -16,6 +18,11 @@ from pathlib import Path
 from types import ModuleType
 
 import pandas as pd
+
+from gapath.discovery import entry_points, imported
+
+ALL = "*"
+"""What a section declares that wants the trials of every task, or of every experiment."""
 
 RECONSTRUCTED = (
     "The maps marked reconstructed are not the paper's: its figures are lost. They were drawn "
@@ -127,8 +134,16 @@ class Section:
 
 
 def find_sections() -> list[ModuleType]:
-    """Find the modules that make a section, in the order of the page."""
-    return [module for module in _find("table*.py", "figure_*.py") if hasattr(module, "section")]
+    """Find the modules that make a section, in the order of the page.
+
+    Returns
+    -------
+    list of module
+        Those of pipelines, and entry points of installed packages in the group ``gapath.tables``.
+    """
+    own = [module for module in _find("table*.py", "figure_*.py") if hasattr(module, "section")]
+    others = [imported(entry) for entry in entry_points("gapath.tables").values()]
+    return sorted([*own, *others], key=lambda module: module.ORDER)
 
 
 def find_bench_figures() -> list[ModuleType]:

@@ -84,7 +84,7 @@ def implied_epochs(map_name: str, planner: str) -> list[int]:
     list of int
         Epochs of the executions that found a path; none for a planner without epochs.
     """
-    if not planner.startswith("ga"):
+    if planner not in PLANNERS:
         return []
     one = min(found_seconds("kg18_test1", planner), default=1.0)
     return [round(time / one) for time in found_seconds(map_name, planner)]

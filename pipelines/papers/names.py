@@ -30,32 +30,6 @@ ORDER = (
 """The papers' order, method by method."""
 
 
-def split(name: str) -> tuple[str, dict[str, str]]:
-    """Take a method's name apart.
-
-    Parameters
-    ----------
-    name : str
-        As `gapath.runs.naming.method_name` makes it:
-        "sedighi[corner_cutting=forbid,population=50]".
-
-    Returns
-    -------
-    base : str
-        The name of its YAML.
-    changes : dict of str to str
-        What differs from it.
-    """
-    base, _, changes = name.removesuffix("]").partition("[")
-    return base, dict(change.split("=", 1) for change in changes.split(",") if change)
-
-
-def join(base: str, changes: dict[str, str]) -> str:
-    """Put a method's name together again."""
-    text = ",".join(f"{setting}={value}" for setting, value in changes.items())
-    return f"{base}[{text}]" if text else base
-
-
 def label(name: str, source: str = "") -> str:
     """Give the name that people read, with the mark that a reconstructed map must carry.
 

@@ -30,20 +30,19 @@ SUCCESSES: dict[str, tuple[int, int, int]] = {
 """S04 Table 1 as counts of `RUNS`, in the order of `PLANNERS`: the paper prints percentages."""
 
 
-def paper_successes(map_name: str, planner: str) -> int | None:
+def paper_successes(map_name: str, preset: str) -> int | None:
     """Give the paper's number of successful runs; None if it has no such cell.
 
     Parameters
     ----------
-    map_name, planner : str
-        Names as in the configuration, the planner's with or without overridden settings.
+    map_name, preset : str
+        Names as in the configuration; the planner's is that of its YAML.
 
     Returns
     -------
     int or None
         Of `RUNS`.
     """
-    base = planner.partition("[")[0]
-    if map_name not in SUCCESSES or base not in PLANNERS:
+    if map_name not in SUCCESSES or preset not in PLANNERS:
         return None
-    return SUCCESSES[map_name][PLANNERS.index(base)]
+    return SUCCESSES[map_name][PLANNERS.index(preset)]

@@ -71,9 +71,10 @@ def _runs_parser() -> argparse.ArgumentParser:
 def _list(outputs: Path) -> None:
     from tabulate import tabulate
 
-    from gapath.pipelines.reading.runs import find_runs, summary
+    from gapath.pipelines.reading.listing import listing
+    from gapath.store.records import find_runs
 
-    print(tabulate(summary(find_runs(outputs)), headers="keys", disable_numparse=True))
+    print(tabulate(listing(find_runs(outputs)), headers="keys", disable_numparse=True))
 
 
 def _report(outputs: Path, folder: Path) -> None:

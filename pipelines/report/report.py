@@ -12,12 +12,12 @@ from tqdm import tqdm
 
 from gapath.errors import InputError, require
 from gapath.pipelines.page.page import Part, files_of, render
-from gapath.pipelines.page.section import find_sections
+from gapath.pipelines.page.section import ALL, find_sections
 from gapath.pipelines.reading.collect import Skipped, read_trials
-from gapath.pipelines.reading.runs import Run, find_runs
 from gapath.pipelines.report.bench import make_bench_page
 from gapath.pipelines.report.command import as_sweeps
 from gapath.store.durable import write_whole
+from gapath.store.records import RunRecord, find_runs
 
 
 def make_report(outputs: Path, folder: Path) -> tuple[list[Path], list[Skipped]]:
@@ -64,32 +64,29 @@ def _runs_page(
 ) -> tuple[list[tuple[str, bytes]], list[Skipped]]:
     """Make the page of the runs, with a link to the benchmarks' and what was left out of that."""
     runs = find_runs(outputs)
-    plans, drives, unusable = read_trials(runs)
+    trials, unusable = read_trials(runs)
+    count = sum(map(len, trials.values()))
     first = f"; {unusable[0].run}: {unusable[0].reason}" if unusable else ""
-    require(len(plans) + len(drives) > 0, outputs, f"{len(runs)} runs of which none can be used"
+    require(count > 0, outputs, f"{len(runs)} runs of which none can be used"
             f"{first}", "a finished run")  # fmt: skip
     skipped = skipped + unusable
-    runs = _runs_of([plans, drives], runs)
+    frames = list(trials.values())
+    runs = _runs_of(frames, runs)
     parts = []
     modules = find_sections()
     for module in tqdm(modules, "sections", disable=None):
-        trials = {"plan": plans, "drive": drives}[module.TASK]
-        if module.EXPERIMENT is None:
-            wanted = {other.EXPERIMENT for other in modules if other.TASK == module.TASK}
-            mine = trials[~trials["experiment"].isin(wanted)]
-        else:
-            mine = trials[trials["experiment"] == module.EXPERIMENT]
-        part = _part(module, mine, runs)
-        if part is not None:
-            parts.append(part)
-            skipped += [Skipped(*entry) for entry in part.section.skipped]
+        for task in [task for task in trials if module.TASK in (ALL, task)]:
+            mine = _wanted(module, modules, task, trials[task])
+            part = _part(module, task, mine, runs)
+            if part is not None:
+                parts.append(part)
+                skipped += [Skipped(*entry) for entry in part.section.skipped]
     skipped = list(dict.fromkeys(skipped))  # two figures may read the same log
-    frames = [plans, drives]
     page = render(
         "report.html.j2",
         parts=parts,
         bench=bench,
-        trials=sum(map(len, frames)),
+        trials=count,
         runs=runs,
         reconstructed=any((frame["map_source"] == "reconstructed").any() for frame in frames),
         skipped=skipped,
@@ -101,27 +98,48 @@ def _runs_page(
     return [*files, ("index.html", page.encode())], skipped
 
 
-def _runs_of(trials: Iterable[pd.DataFrame], runs: Sequence[Run]) -> list[Run]:
+def _wanted(
+    module: ModuleType, modules: Sequence[ModuleType], task: str, trials: pd.DataFrame
+) -> pd.DataFrame:
+    """Give the trials of a task that a section wants."""
+    if module.EXPERIMENT == ALL:
+        return trials
+    if module.EXPERIMENT is None:
+        wanted = {other.EXPERIMENT for other in modules if task == other.TASK}
+        return trials[~trials["experiment"].isin(wanted)]
+    return trials[trials["experiment"] == module.EXPERIMENT]
+
+
+def _runs_of(trials: Iterable[pd.DataFrame], runs: Sequence[RunRecord]) -> list[RunRecord]:
     """Give the runs that the trials come from."""
     used = {key for frame in trials for key in frame["key"]}
     return [run for run in runs if run.folder.name in used]
 
 
-def _part(module: ModuleType, trials: pd.DataFrame, runs: Sequence[Run]) -> Part | None:
+def _part(
+    module: ModuleType, task: str, trials: pd.DataFrame, runs: Sequence[RunRecord]
+) -> Part | None:
     """Ask a module for its section; None where it has nothing to show."""
     runs = _runs_of([trials], runs)
     section = module.section(trials, runs) if len(trials) else None
     if section is None:
         return None
-    commands = as_sweeps(run.manifest["command"] for run in runs)
-    return Part(module.__name__.rpartition(".")[2], section, commands)
+    commands = as_sweeps(run.known.command for run in runs)
+    return Part(_anchor(module, task), section, commands)
 
 
-def _versions(runs: Sequence[Run]) -> list[tuple[str, str]]:
+def _anchor(module: ModuleType, task: str) -> str:
+    """Name a section's place on the page: no two modules have the same path."""
+    path = module.__name__.removeprefix("gapath.pipelines.")
+    words = path.replace("_", ".").split(".")
+    return "-".join([*words, task] if module.TASK == ALL else words)
+
+
+def _versions(runs: Sequence[RunRecord]) -> list[tuple[str, str]]:
     """Give each program with its version in the runs; several where the runs differ."""
-    names = sorted({name for run in runs for name in run.manifest["versions"]})
+    names = sorted({name for run in runs for name in run.known.versions})
     return [
-        (name, ", ".join(sorted({str(run.manifest["versions"].get(name, "?")) for run in runs})))
+        (name, ", ".join(sorted({str(run.known.versions.get(name, "?")) for run in runs})))
         for name in names
     ]
 

@@ -9,17 +9,15 @@ import pandas as pd
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from gapath.errors import InputError
 from gapath.events import Evolved, RunStarted
 from gapath.kernels.raster import polyline
 from gapath.pipelines.page.figures import Look, looks, panels, render, style
 from gapath.pipelines.page.map_picture import draw_map, mark_ends
 from gapath.pipelines.page.section import DRAWN, Figure, Section
 from gapath.pipelines.papers.names import label, rank
-from gapath.pipelines.reading.logs import run_start
-from gapath.pipelines.reading.runs import Run
-from gapath.pipelines.s04.runs import planner_and_form
-from gapath.recorders.mcap import FILE, read_events
+from gapath.pipelines.reading.logs import events_of, read_logs, run_start
+from gapath.pipelines.s04.runs import planner_of
+from gapath.store.records import RunRecord
 
 TASK = "plan"
 EXPERIMENT = "s04_table1"
@@ -55,14 +53,14 @@ def collisions(start: RunStarted, path: NDArray[np.int32]) -> NDArray[np.int32]:
     return np.asarray(path[hit])
 
 
-def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
+def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
     """Draw each search space with the best path of each planner.
 
     Parameters
     ----------
     trials : DataFrame
         The trials of the experiment.
-    runs : sequence of Run
+    runs : sequence of RunRecord
         The runs they come from, with their logs.
 
     Returns
@@ -71,17 +69,9 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
         The pictures; None if no run has a log.
     """
     found: dict[str, dict[str, Best]] = defaultdict(dict)
-    skipped = []
-    for run in runs:
-        if FILE not in run.manifest["files"]:
-            continue
-        try:
-            best = read_best(run)
-        except InputError as error:
-            skipped.append((run.name, str(error)))
-        else:
-            planner = planner_and_form(run.manifest["planner"])[0]
-            found[run.manifest["map"]].setdefault(planner, best)
+    read, skipped = read_logs(runs, read_best)
+    for run, best in read:
+        found[run.known.map].setdefault(planner_of(run), best)
     names = sorted(found, key=rank)
     if not names and not skipped:
         return None
@@ -104,12 +94,12 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
     )
 
 
-def read_best(run: Run) -> Best:
+def read_best(run: RunRecord) -> Best:
     """Read a run's log for its best path.
 
     Parameters
     ----------
-    run : Run
+    run : RunRecord
         A run with a log.
 
     Returns
@@ -122,7 +112,7 @@ def read_best(run: Run) -> Best:
     InputError
         If the log does not begin with the run's start, or cannot be read.
     """
-    events = read_events(run.folder / FILE)
+    events = events_of(run)
     start = run_start(events)
     best = Best(start)
     for event in events:

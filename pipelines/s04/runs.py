@@ -1,49 +1,75 @@
 """What the runs of the experiment on S04's Table 1 have in common, and what tells them apart."""
 
+from collections.abc import Sequence
+
 import pandas as pd
 
-from gapath.components import yaml_values
-from gapath.pipelines.papers.names import join, split
-from gapath.pipelines.papers.s04 import PLANNERS
+from gapath.events import Settings
+from gapath.runs.naming import Method
+from gapath.store.records import RunRecord
+
+_OWN: Settings = {"corner_cutting": "no_diagonals"}
+"""What the experiment itself sets, whichever planner it tries."""
+
+_FORM = "stop_when_feasible"
 
 
-def planner_and_form(name: str) -> tuple[str, bool]:
-    """Name a planner without what the experiment itself sets.
+def other_changes(run: RunRecord) -> Settings:
+    """Give what differs from a planner's YAML, besides what the experiment itself sets.
 
     Parameters
     ----------
-    name : str
-        Of a planner, as in the runs.
+    run : RunRecord
+        A run.
 
     Returns
     -------
-    planner : str
-        With what differs otherwise: "sedighi", or "sedighi[population=50]".
-    short : bool
-        Whether its runs end at their first path.
+    mapping of str to str, int, float, bool or None
+        Setting -> value.
     """
-    base, changes = split(name)
-    usual = yaml_values("planner", base) if base in PLANNERS else {}
-    short = changes.pop("stop_when_feasible", str(usual.get("stop_when_feasible", False)))
-    if changes.get("corner_cutting") == "no_diagonals":
-        del changes["corner_cutting"]
-    return join(base, changes), short == "True"
+    changes = run.known.changes.items()
+    return {k: v for k, v in changes if k != _FORM and (k, v) not in _OWN.items()}
 
 
-def with_form(trials: pd.DataFrame) -> pd.DataFrame:
-    """Give trials a column `short`, and planners the names of `planner_and_form`.
+def planner_of(run: RunRecord) -> str:
+    """Name a run's planner without what the experiment itself sets.
+
+    Parameters
+    ----------
+    run : RunRecord
+        A run.
+
+    Returns
+    -------
+    str
+        "sedighi", or "sedighi[population=50]".
+    """
+    return Method(run.known.preset, other_changes(run)).name
+
+
+def with_form(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> pd.DataFrame:
+    """Give trials the columns `preset` and `short`, and planners the names of `planner_of`.
 
     Parameters
     ----------
     trials : DataFrame
         One row a trial.
+    runs : sequence of RunRecord
+        The runs they come from.
 
     Returns
     -------
     DataFrame
-        A copy.
+        A copy; `preset` is the name of the planner's YAML, `short` tells whether the run's
+        trials end at their first path.
     """
-    forms = {name: planner_and_form(name) for name in trials["planner"].unique()}
-    planner = trials["planner"].map({name: form[0] for name, form in forms.items()})
-    short = trials["planner"].map({name: form[1] for name, form in forms.items()})
-    return trials.assign(planner=planner, short=short.astype(bool))
+    keys = [run.folder.name for run in runs]
+    forms = pd.DataFrame(
+        {
+            "preset": [run.known.preset for run in runs],
+            "planner": [planner_of(run) for run in runs],
+            "short": [bool(run.settings.get(f"planner.{_FORM}", False)) for run in runs],
+        },
+        index=keys,
+    )
+    return trials.assign(**{name: trials["key"].map(forms[name]) for name in forms})

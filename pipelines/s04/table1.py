@@ -10,8 +10,8 @@ from gapath.pipelines.numbers.text import NOTHING, middle, number, percent, perc
 from gapath.pipelines.page.section import DRAWN, Section, Table
 from gapath.pipelines.papers.names import label, rank
 from gapath.pipelines.papers.s04 import RUNS, paper_successes
-from gapath.pipelines.reading.runs import Run
 from gapath.pipelines.s04.runs import with_form
+from gapath.store.records import RunRecord
 
 TASK = "plan"
 EXPERIMENT = "s04_table1"
@@ -20,14 +20,14 @@ ORDER = 86
 _BY = ["map", "map_source", "planner"]
 
 
-def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
+def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
     """Make the section of S04 Table 1.
 
     Parameters
     ----------
     trials : DataFrame
         The trials of the experiment.
-    runs : sequence of Run
+    runs : sequence of RunRecord
         The runs they come from.
 
     Returns
@@ -35,6 +35,7 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
     Section
         Success beside the paper's, and what it takes.
     """
+    trials = with_form(trials, runs)
     rows = summarise_cells(trials)
     return Section(
         title="S04 Table 1: three genotypes on eight search spaces",
@@ -56,15 +57,14 @@ def lost(trials: pd.DataFrame) -> tuple[int, int]:
     Parameters
     ----------
     trials : DataFrame
-        One row a trial; the same trial of a run of every generation and of one that ends at its
-        first path are the same up to there.
+        As `with_form` gives them; the same trial of a run of every generation and of one that
+        ends at its first path are the same up to there.
 
     Returns
     -------
     lost, found : int
         Of the runs that are there in both forms.
     """
-    trials = with_form(trials)
     by = ["map", "planner", "seed", "trial"]
     first, last = trials[trials["short"]], trials[~trials["short"]]
     both = first.merge(last, on=by, suffixes=("_first", "_last"))
@@ -78,26 +78,25 @@ def summarise_cells(trials: pd.DataFrame) -> pd.DataFrame:
     Parameters
     ----------
     trials : DataFrame
-        One row a trial.
+        As `with_form` gives them.
 
     Returns
     -------
     DataFrame
-        map, map_source, planner (as `s04_runs.planner_and_form`); few_n and few_found, of the
+        map, map_source, planner, preset; few_n and few_found, of the
         runs of every generation, with their interval; the columns of `summary.summarise`, of
         the runs that end at a path; paper (successes of `s04.RUNS`), paper_low, paper_high;
         inside: whether the latter runs' rate lies in the paper's interval, and paper_inside:
         the paper's in that of the former. Missing where there are no such runs.
     """
-    trials = with_form(trials)
     short, every = trials[trials["short"]], trials[~trials["short"]]
-    rows = trials[_BY].drop_duplicates()
+    rows = trials[[*_BY, "preset"]].drop_duplicates()
     rows = rows.sort_values(_BY, key=lambda names: names.map(lambda name: rank(str(name))))
     few = every.groupby(_BY)["feasible"].agg(few_n="size", few_found="sum").reset_index()
     rows = rows.merge(few, on=_BY, how="left")
     seeds = summarise_by(short if len(short) else trials, _BY)
     rows = rows.merge(seeds if len(short) else seeds.iloc[:0], on=_BY, how="left")
-    paper = [paper_successes(*pair) for pair in zip(rows["map"], rows["planner"], strict=True)]
+    paper = [paper_successes(*pair) for pair in zip(rows["map"], rows["preset"], strict=True)]
     rows["paper"] = pd.array(paper, dtype="Int64")
     cells = [_compared(row) for _, row in rows.iterrows()]
     return pd.concat([rows, pd.DataFrame(cells, index=rows.index)], axis=1)

@@ -4,16 +4,15 @@ from collections.abc import Sequence
 
 import pandas as pd
 
-from gapath.components import yaml_values
 from gapath.pipelines.numbers.statistics import wilson
 from gapath.pipelines.numbers.text import number, percent
 from gapath.pipelines.page.figures import legend as draw_legend
 from gapath.pipelines.page.figures import looks, panels, render, style
 from gapath.pipelines.page.section import DRAWN, Figure, Section, Table
-from gapath.pipelines.papers.names import label, rank, split
+from gapath.pipelines.papers.names import label, rank
 from gapath.pipelines.papers.s04 import PLANNERS, RUNS, paper_successes
-from gapath.pipelines.reading.runs import Run
-from gapath.pipelines.s04.runs import planner_and_form
+from gapath.pipelines.s04.runs import other_changes
+from gapath.store.records import RunRecord
 
 TASK = "plan"
 EXPERIMENT = "s04_sweep"
@@ -27,14 +26,14 @@ SWEPT = {
 """The settings of the sweep."""
 
 
-def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
+def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
     """Make the section on the sweep.
 
     Parameters
     ----------
     trials : DataFrame
         The trials of the experiment.
-    runs : sequence of Run
+    runs : sequence of RunRecord
         The runs they come from.
 
     Returns
@@ -43,10 +42,10 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
         A table with a row a setting, and a figure a swept setting; None without a cell of the
         paper's.
     """
-    cells = rate_cells(trials)
+    cells = rate_cells(trials, runs)
     if cells.empty:
         return None
-    others = sorted(name for name in trials["planner"].unique() if swept_settings(name) is None)
+    others = sorted({run.known.method for run in runs if swept_settings(run) is None})
     rows = rate_settings(cells)
     return Section(
         title="S04: how success depends on population, mutation and crossover",
@@ -67,34 +66,34 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
     )
 
 
-def swept_settings(name: str) -> tuple[str, dict[str, float]] | None:
-    """Read what a planner's name says of its settings.
+def swept_settings(run: RunRecord) -> dict[str, float] | None:
+    """Give a run's values of what is swept.
 
     Parameters
     ----------
-    name : str
-        As `gapath.runs.naming.method_name` makes it: "sedighi[population=50]".
+    run : RunRecord
+        A run.
 
     Returns
     -------
-    (str, dict) or None
-        The name of its YAML, and the values of `SWEPT`; what the name leaves out is as in the
-        YAML. None if it differs in something else as well.
+    dict or None
+        The values of `SWEPT`; None if its planner is none of the paper's, or differs from its
+        YAML in something else as well.
     """
-    base, changes = split(planner_and_form(name)[0])
-    if base not in PLANNERS or not set(changes) <= set(SWEPT):
+    if run.known.preset not in PLANNERS or not set(other_changes(run)) <= set(SWEPT):
         return None
-    values = yaml_values("planner", base) | changes
-    return base, {setting: float(values[setting]) for setting in SWEPT}
+    return {name: float(str(run.settings[f"planner.{name}"])) for name in SWEPT}
 
 
-def rate_cells(trials: pd.DataFrame) -> pd.DataFrame:
+def rate_cells(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> pd.DataFrame:
     """Give the success of each search space, planner and setting.
 
     Parameters
     ----------
     trials : DataFrame
         One row a trial.
+    runs : sequence of RunRecord
+        The runs they come from.
 
     Returns
     -------
@@ -102,18 +101,19 @@ def rate_cells(trials: pd.DataFrame) -> pd.DataFrame:
         map, planner, the columns of `SWEPT`, n, success, paper, paper_low, paper_high, inside
         (whether the rate lies in the paper's interval).
     """
+    by_key = {run.folder.name: run for run in runs}
     rows = []
-    for (name, method), group in trials.groupby(["map", "planner"]):
-        paper, swept = paper_successes(name, method), swept_settings(method)
-        if paper is None or swept is None:
+    for (name, _), group in trials.groupby(["map", "planner"]):
+        run = by_key[group["key"].iloc[0]]
+        paper, settings = paper_successes(name, run.known.preset), swept_settings(run)
+        if paper is None or settings is None:
             continue
-        planner, settings = swept
         low, high = wilson(paper / RUNS, RUNS)
         success = group["feasible"].mean()
         rows.append(
             {
                 "map": name,
-                "planner": planner,
+                "planner": run.known.preset,
                 **settings,
                 "n": len(group),
                 "success": success,

@@ -1,1 +1,1 @@
-"""Sections for any experiment that no paper has."""
+"""Sections for experiments of one's own, and what is told of every experiment alike."""

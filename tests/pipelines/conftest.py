@@ -1,6 +1,6 @@
 import hashlib
-import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -24,8 +24,21 @@ from gapath.events import (
     TrialStarted,
 )
 from gapath.grid import GridMap
-from gapath.problem import Evolution, PlanStatus, Problem
+from gapath.problem import Answer, Evolution, PlanStatus, Problem
 from gapath.recorders.mcap import Recorder
+from gapath.runs.naming import Method
+from gapath.store.records import (
+    MANIFEST,
+    SETTINGS,
+    STATUS,
+    TRIALS,
+    FileEntry,
+    Manifest,
+    RunRecord,
+    Status,
+)
+from gapath.store.runfolder import LOCK, RunFolder
+from gapath.store.settings import flatten, nested
 
 MAPS = ("kg18_test1", "kg18_test2", "kg18_test3", "kg18_test4")
 PLANNERS = ("ga1", "ga2", "ga3", "astar", "dijkstra")
@@ -46,6 +59,13 @@ def make_path(shift: int) -> np.ndarray:
     return np.stack([x, 6 - dip], axis=1).astype(np.int32)
 
 
+DATE = "2026-01-01T12:00:00"
+NOTHING: Mapping[str, Any] = {}
+METRICS = {
+    "length": 25.0, "line_length": 24.5, "turns": 4, "clearance": 1.0, "curvature": 0.1,
+}  # fmt: skip
+
+
 def make_trials(grid: GridMap, planner: str, experiment: str, seed: int, n: int) -> pd.DataFrame:
     random = np.random.default_rng([seed, grid.instance, len(planner), int(grid.name[-1])])
     is_ga = planner.startswith("ga")
@@ -55,14 +75,14 @@ def make_trials(grid: GridMap, planner: str, experiment: str, seed: int, n: int)
     cost = np.where(feasible, 11.5 + random.integers(0, 4, n), 200012.0)
     return pd.DataFrame({
         "experiment": experiment, "map": grid.name, "map_instance": grid.instance,
-        "map_source": grid.source, "width": grid.cols, "height": grid.rows,
+        "map_source": grid.source, "map_digest": grid.digest, "width": grid.cols, "height": grid.rows,
         "start": str(grid.start), "target": str(grid.target),
         "corner_cutting": "allow", "planner": planner, "seed": seed, "trial": np.arange(n),
         "status": np.where(feasible, "found", "not_found"), "feasible": feasible, "cost": cost,
         "optimal_cost": 11.0, "optimality_ratio": np.where(feasible, cost / 11.0, np.nan),
-        "length": 25.0, "turns": 4, "clearance": 1.0, "curvature": 0.1, "epochs": epochs,
+        "obstacles": np.where(feasible, 0, 2), "epochs": epochs,
         "evaluations": epochs * 40, "expansions": 0 if is_ga else 200,
-        "plan_time_s": 1e-5 + 4e-6 * epochs,
+        "plan_time_s": 1e-5 + 4e-6 * epochs, "stage_times_s": "{}", **METRICS,
     })  # fmt: skip
 
 
@@ -79,7 +99,7 @@ def write_log(folder: Path, grid: GridMap, trials: pd.DataFrame) -> None:
             problem,
             int(first["seed"]),
             len(trials),
-            "planner: {}\n",
+            plan_settings(first["planner"]),
             {"gapath": "0"},
             make_path(0),
             11.0,
@@ -98,18 +118,10 @@ def write_log(folder: Path, grid: GridMap, trials: pd.DataFrame) -> None:
         step += max(row.epochs, 1)
         path = make_path(row.trial) if row.feasible else np.empty((0, 2), dtype=np.int32)
         status = PlanStatus.FOUND if row.feasible else PlanStatus.NOT_FOUND
-        recorder.record(
-            TrialFinished(
-                step - 1,
-                row.trial,
-                status,
-                row.cost,
-                row.epochs,
-                row.evaluations,
-                row.expansions,
-                path,
-            )
-        )
+        weights = row.cost - 100000 * row.obstacles
+        spent = row.epochs, row.evaluations, row.expansions
+        answer = Answer(status, path, weights, row.obstacles, 100000, *spent)
+        recorder.record(TrialFinished(step - 1, row.trial, answer))
     recorder.record(RunFinished(step, len(trials), int(trials["feasible"].sum())))
     recorder.close()
 
@@ -122,7 +134,7 @@ def make_drives(grid: GridMap, navigator: str, experiment: str, n: int) -> pd.Da
     steps = 21 + random.integers(0, 5, n) * is_ga
     return pd.DataFrame({
         "experiment": experiment, "map": grid.name, "map_instance": grid.instance,
-        "map_source": grid.source, "width": grid.cols, "height": grid.rows,
+        "map_source": grid.source, "map_digest": grid.digest, "width": grid.cols, "height": grid.rows,
         "start": str(grid.start), "target": str(grid.target),
         "corner_cutting": "allow", "navigator": navigator, "seed": 0, "trial": np.arange(n),
         "outcome": np.where(reached, "reached", "returned"), "reached": reached,
@@ -130,36 +142,40 @@ def make_drives(grid: GridMap, navigator: str, experiment: str, n: int) -> pd.Da
         "steps_ratio": np.where(reached, steps / 21.0, np.nan), "ga_calls": 6,
         "calls_a": np.where(reached, 0, 9), "calls_b": 2 * is_ga, "calls_c": 4, "replans": 3,
         "returns": np.where(reached, 0, 1), "stands": 0, "evaluations": 4000 * is_ga,
-        "seen_fields": 300, "cost": 11.5, "length": 25.0, "turns": 4, "clearance": 1.0,
-        "curvature": 0.1, "compute_time_s": (0.004 + 1e-5 * steps) * (10 if is_ga else 1),
+        "seen_fields": 300, "cost": 11.5,
+        "compute_time_s": (0.004 + 1e-5 * steps) * (10 if is_ga else 1), **METRICS,
     })  # fmt: skip
 
 
-def drive_settings(navigator: str) -> str:
+def plan_settings(preset: str, changes: Mapping[str, Any] = NOTHING) -> dict[str, Any]:
+    values = flatten({"planner": yaml_values("planner", preset)})
+    changed = {f"planner.{name}": value for name, value in changes.items()}
+    return {"task": "plan", **values, **changed}
+
+
+def drive_settings(preset: str) -> dict[str, Any]:
     plain = yaml.safe_load((files("gapath.conf") / "config.yaml").read_text("utf-8"))
-    own = {"task": "drive", "navigator": yaml_values("navigator", navigator)}
-    return yaml.safe_dump(own | {"drive": plain["drive"]})
+    own = {"task": "drive", "navigator": yaml_values("navigator", preset)}
+    return flatten(own | {"drive": plain["drive"]})
 
 
 def make_calls(i: int, step: int, row: Any) -> Iterator[Called]:
     """Call planners in a drive's first and fifth step; in the ninth of one that fails in vain."""
 
-    def call(part: str, index: int, cost: float, evaluations: int, adopted: bool = False) -> Called:
-        found = cost < 1000
-        status = PlanStatus.FOUND if found else PlanStatus.NOT_FOUND
-        path = make_path(0) if found else np.empty((0, 2), dtype=np.int32)
-        return Called(
-            step, row.trial, part, index, adopted, status, cost, 10, evaluations, 0, path
-        )  # fmt: skip
+    def call(part: str, index: int, obstacles: int, evaluations: int, adopted: bool = False) -> Any:
+        status = PlanStatus.NOT_FOUND if obstacles else PlanStatus.FOUND
+        path = np.empty((0, 2), dtype=np.int32) if obstacles else make_path(0)
+        answer = Answer(status, path, 11.5, obstacles, 100000, 10, evaluations)
+        return Called(step, row.trial, part, index, adopted, answer)
 
     if i == 1:
-        yield call("C", 0, 11.5, 1000, adopted=True)
+        yield call("C", 0, 0, 1000, adopted=True)
     if i == 5:
-        yield call("B", 0, 12.0, 400)
+        yield call("B", 0, 0, 400)
     if i == 9 and not row.reached:
-        for index, cost in enumerate((100011.5, 100012.0, 200013.5, 100014.0)):
-            yield call("C", index, cost, 2000)
-        yield call("A", 0, 300010.5, 600)
+        for index, obstacles in enumerate((1, 1, 2, 1)):
+            yield call("C", index, obstacles, 2000)
+        yield call("A", 0, 3, 600)
 
 
 def write_drive_log(folder: Path, grid: GridMap, drives: pd.DataFrame) -> None:
@@ -195,28 +211,55 @@ def write_drive_log(folder: Path, grid: GridMap, drives: pd.DataFrame) -> None:
     recorder.close()
 
 
-def write_manifest(folder: Path, **changes: Any) -> None:
-    files = {
-        path.name: {"sha256": hashlib.sha256(path.read_bytes()).hexdigest(),
-                    "bytes": path.stat().st_size}
-        for path in sorted(folder.iterdir())
-        if path.name not in ("manifest.json", "status.json", "run.lock")
+def manifest_of(method: Method, task: str, place: tuple[str, str], **known: Any) -> Manifest:
+    """Make a manifest without files, of a run in the folder <experiment>/<key>."""
+    experiment, key = place
+    values = {
+        "map": "kg18_test1", "map_instance": 0, "map_digest": "0", "seed": 0, "trials": 1, **known,
     }  # fmt: skip
-    manifest = {
-        "key": folder.name,
-        "experiment": folder.parent.name,
-        "versions": {"gapath": "0"},
-        "command": f"gapath experiment={folder.parent.name}",
-        "files": files,
+    tried = (experiment, values["map"], values["map_instance"], method.name, values["seed"])
+    return Manifest(
+        key=key, setting=" ".join(map(str, tried)), experiment=experiment, task=task,
+        method=method.name, preset=method.preset, changes=dict(method.changes),
+        command=f"gapath experiment={experiment}", versions={"gapath": "0"}, files={}, **values,
+    )  # fmt: skip
+
+
+def sign(folder: Path, manifest: Manifest | None = None, **changes: Any) -> None:
+    """Write a manifest, by default the one that is there, for the files as they are now."""
+    own = (MANIFEST, STATUS, LOCK)
+    run = RunFolder(folder)
+    entries = {
+        path.name: FileEntry(run.sha256(path.name), path.stat().st_size)
+        for path in sorted(folder.iterdir())
+        if path.name not in own
     }
-    (folder / "manifest.json").write_text(json.dumps(manifest | changes))
+    replace(manifest or Manifest.read(folder), files=entries, **changes).write(run)
 
 
-def write_status(
-    folder: Path, state: str, date: str = "2026-01-01T12:00:00", text: str = ""
+def write_status(folder: Path, state: str, date: str = DATE, text: str = "") -> None:
+    Status(state, date, date, text).write(RunFolder(folder))
+
+
+def write_run(
+    folder: Path, trials: pd.DataFrame, settings: Mapping[str, Any], manifest: Manifest, date: str
 ) -> None:
-    status = {"state": state, "started": date, "finished": date, "message": text}
-    (folder / "status.json").write_text(json.dumps(status))
+    """Write all of a run folder but its log, which is there already if it has one."""
+    trials.to_parquet(folder / TRIALS)
+    (folder / SETTINGS).write_text(yaml.safe_dump(nested(settings)))
+    sign(folder, manifest)
+    write_status(folder, "done", date)
+
+
+def record_of(
+    preset: str, key: str, task: str = "plan", changes: Mapping[str, Any] = NOTHING, **known: Any
+) -> RunRecord:
+    """Make what is known of a run without its folder, its settings as if they had been read."""
+    place = ("mine", key)
+    manifest = manifest_of(Method(preset, changes), task, place, **known)
+    run = RunRecord(Path(*place), Status("done", DATE, DATE), manifest, "")
+    vars(run)["settings"] = plan_settings(preset, changes)
+    return run
 
 
 @pytest.fixture(scope="session")
@@ -233,7 +276,7 @@ def make_run() -> Callable[..., Path]:
         seed: int = 0,
         n: int = 20,
         log: bool = True,
-        date: str = "2026-01-01T12:00:00",
+        date: str = DATE,
         key: str = "",
     ) -> Path:
         grid = make_map(map_name, instance)
@@ -246,14 +289,13 @@ def make_run() -> Callable[..., Path]:
         folder = outputs / experiment / key[:16]
         folder.mkdir(parents=True)
         trials = make_trials(grid, planner, experiment, seed, n)
-        trials.to_parquet(folder / "trials.parquet")
-        (folder / "config.yaml").write_text("seed: 0\n")
         if log:
             write_log(folder, grid, trials)
-        write_manifest(
-            folder, map=map_name, map_instance=instance, planner=planner, seed=seed, trials=n
-        )
-        write_status(folder, "done", date)
+        manifest = manifest_of(
+            Method(planner), "plan", (experiment, folder.name), map=map_name,
+            map_instance=instance, map_digest=grid.digest, seed=seed, trials=n,
+        )  # fmt: skip
+        write_run(folder, trials, plan_settings(planner), manifest, date)
         return folder
 
     return make
@@ -267,26 +309,26 @@ def make_drive_run() -> Callable[..., Path]:
         outputs: Path,
         experiment: str,
         map_name: str,
-        navigator: str,
+        preset: str,
+        changes: Mapping[str, Any] = NOTHING,
         *,
         instance: int = 0,
         n: int = 12,
         log: bool = False,
     ) -> Path:
         grid = make_map(map_name, instance)
-        key = hashlib.sha256(f"{experiment} {map_name} {navigator} {instance}".encode())
+        method = Method(preset, changes)
+        key = hashlib.sha256(f"{experiment} {map_name} {method.name} {instance}".encode())
         folder = outputs / experiment / key.hexdigest()[:16]
         folder.mkdir(parents=True)
-        drives = make_drives(grid, navigator, experiment, n)
-        drives.to_parquet(folder / "trials.parquet")
-        (folder / "config.yaml").write_text("seed: 0\n")
+        drives = make_drives(grid, method.name, experiment, n)
         if log:
             write_drive_log(folder, grid, drives)
-        write_manifest(
-            folder, map=map_name, map_instance=instance, task="drive", planner=navigator, seed=0,
-            trials=n,
+        manifest = manifest_of(
+            method, "drive", (experiment, folder.name), map=map_name, map_instance=instance,
+            map_digest=grid.digest, trials=n,
         )  # fmt: skip
-        write_status(folder, "done")
+        write_run(folder, drives, drive_settings(preset), manifest, DATE)
         return folder
 
     return make
@@ -303,9 +345,13 @@ def drive_outputs(
             make_drive_run(folder, "drives", name, navigator, log=True)
             for instance in range(3):
                 make_drive_run(folder, "drive_classes", name, navigator, instance=instance)
-    for navigator in ("kg18", "kg18[sensor.range=8]", "kg18[sensor.range=10]", "kg18_astar"):
-        for instance in range(3):
-            make_drive_run(folder, "drive_choices", "kg18_map4", navigator, instance=instance)
+    varied = {"kg18": ({}, {"sensor.range": 8}, {"sensor.range": 10}), "kg18_astar": ({},)}
+    for preset, all_changes in varied.items():
+        for changes in all_changes:
+            for instance in range(3):
+                make_drive_run(
+                    folder, "drive_choices", "kg18_map4", preset, changes, instance=instance
+                )
     return folder
 
 

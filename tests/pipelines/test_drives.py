@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import yaml
+from gapath.pipelines.reading.runs import find_runs
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -19,7 +20,6 @@ from gapath.pipelines.kg18.drives import table_classes as table_drive_classes
 from gapath.pipelines.numbers.drive_summary import over_instances, summarise_drives
 from gapath.pipelines.numbers.statistics import wilson
 from gapath.pipelines.reading.collect import collect
-from gapath.pipelines.reading.runs import find_runs
 from gapath.pipelines.report.report import make_report
 from gapath.pipelines.sweeps import table_drives as table_drives_overview
 from gapath.problem import PlanStatus, Problem

@@ -1,6 +1,7 @@
 import numpy as np
 import pandas as pd
 import pytest
+from gapath.pipelines.reading.runs import find_runs
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -9,7 +10,6 @@ from gapath.events import TrialFinished
 from gapath.pipelines.kg18 import figure_convergence, figure_evaluations, figure_paths
 from gapath.pipelines.page.figures import looks
 from gapath.pipelines.reading.collect import collect
-from gapath.pipelines.reading.runs import find_runs
 from gapath.problem import PlanStatus
 
 

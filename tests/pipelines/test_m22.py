@@ -3,6 +3,7 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+from gapath.pipelines.reading.runs import find_runs
 
 from gapath.api import load_map
 from gapath.components import build
@@ -17,7 +18,6 @@ from gapath.pipelines.m22 import logs as m22_logs
 from gapath.pipelines.m22 import table as table_m22
 from gapath.pipelines.papers import m22
 from gapath.pipelines.reading.collect import collect
-from gapath.pipelines.reading.runs import find_runs
 from gapath.pipelines.report.report import make_report
 from gapath.problem import Problem
 from gapath.recorders import mcap

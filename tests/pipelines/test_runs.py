@@ -3,10 +3,10 @@ import json
 import shutil
 
 import pytest
+from gapath.pipelines.reading.runs import find_runs, summary
 
 from gapath.errors import InputError
 from gapath.pipelines.reading.collect import collect
-from gapath.pipelines.reading.runs import find_runs, summary
 
 from .conftest import write_manifest, write_status
 

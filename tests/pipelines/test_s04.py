@@ -3,6 +3,7 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+from gapath.pipelines.reading.runs import find_runs
 
 from gapath.components import build
 from gapath.discovery import yaml_values
@@ -10,7 +11,6 @@ from gapath.errors import InputError
 from gapath.pipelines.numbers.statistics import wilson
 from gapath.pipelines.papers.s04 import MAPS, RUNS, SUCCESSES, paper_successes
 from gapath.pipelines.reading.collect import collect
-from gapath.pipelines.reading.runs import find_runs
 from gapath.pipelines.s04 import figure_paths as figure_s04_paths
 from gapath.pipelines.s04 import table1 as table_s04
 from gapath.pipelines.s04 import table_sweep as table_s04_sweep

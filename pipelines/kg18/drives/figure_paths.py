@@ -12,15 +12,13 @@ from matplotlib.figure import Figure as Canvas
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from gapath.errors import InputError
 from gapath.events import DriveFinished, Event, Outcome, RunStarted, Stepped
 from gapath.pipelines.page.figures import WIDTH, render, style
 from gapath.pipelines.page.map_picture import draw_map, mark_ends
 from gapath.pipelines.page.section import RECONSTRUCTED, Figure, Section
 from gapath.pipelines.papers.names import label, rank
-from gapath.pipelines.reading.logs import run_start
-from gapath.pipelines.reading.runs import Run
-from gapath.recorders.mcap import FILE, read_events
+from gapath.pipelines.reading.logs import events_of, read_logs, run_start
+from gapath.store.records import RunRecord
 
 TASK = "drive"
 EXPERIMENT = "drives"
@@ -47,21 +45,21 @@ class Trail:
 
 
 @dataclass(frozen=True, eq=False)
-class Example:
+class Driven:
     """What a log says about one run: its problem and some drives."""
 
     start: RunStarted
     trails: list[Trail]
 
 
-def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
+def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
     """Draw each map with the trails of some drives.
 
     Parameters
     ----------
     trials : DataFrame
         The drives of the experiment.
-    runs : sequence of Run
+    runs : sequence of RunRecord
         The runs they come from, with their logs.
 
     Returns
@@ -69,26 +67,13 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
     Section or None
         A figure a map; None if no run has a log of a drive.
     """
-    examples: dict[str, dict[str, Example]] = defaultdict(dict)
-    skipped = []
-    for run in runs:
-        navigator = run.manifest["planner"]
-        if (
-            (navigator, True) not in _LOOKS
-            or run.manifest["map_instance"]
-            or FILE not in run.manifest["files"]
-        ):
-            continue
-        drives = trials[trials["key"] == run.folder.name].sort_values("trial")
-        reached = drives.loc[drives["reached"], "trial"]
-        failed = drives.loc[~drives["reached"], "trial"]
-        wanted = {*reached[: EXAMPLES if navigator == "kg18" else 1], *failed[:1]}
-        try:
-            example = read_trails(read_events(run.folder / FILE), wanted)
-        except InputError as error:
-            skipped.append((run.name, str(error)))
-        else:
-            examples[run.manifest["map"]].setdefault(navigator, example)
+    examples: dict[str, dict[str, Driven]] = defaultdict(dict)
+    drawn = [
+        run for run in runs if (run.known.method, True) in _LOOKS and not run.known.map_instance
+    ]
+    read, skipped = read_logs(drawn, lambda run: read_trails(events_of(run), _wanted(trials, run)))
+    for run, driven in read:
+        examples[run.known.map].setdefault(run.known.method, driven)
     figures = tuple(_figure(examples[name]) for name in sorted(examples, key=rank))
     if not figures and not skipped:
         return None
@@ -103,7 +88,15 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
     )
 
 
-def read_trails(events: Iterator[Event], wanted: set[int]) -> Example:
+def _wanted(trials: pd.DataFrame, run: RunRecord) -> set[int]:
+    """Choose which drives of a run to draw."""
+    drives = trials[trials["key"] == run.folder.name].sort_values("trial")
+    reached = drives.loc[drives["reached"], "trial"]
+    failed = drives.loc[~drives["reached"], "trial"]
+    return {*reached[: EXAMPLES if run.known.method == "kg18" else 1], *failed[:1]}
+
+
+def read_trails(events: Iterator[Event], wanted: set[int]) -> Driven:
     """Read drives from a log, no further than the last wanted one.
 
     Parameters
@@ -115,7 +108,7 @@ def read_trails(events: Iterator[Event], wanted: set[int]) -> Example:
 
     Returns
     -------
-    Example
+    Driven
         The run's start and the wanted drives, in order.
 
     Raises
@@ -134,10 +127,10 @@ def read_trails(events: Iterator[Event], wanted: set[int]) -> Example:
         elif isinstance(event, DriveFinished) and event.trial in wanted:
             trails.append(Trail(np.array(places, dtype=np.int32), event.outcome))
             places = []
-    return Example(start, trails)
+    return Driven(start, trails)
 
 
-def _figure(examples: dict[str, Example]) -> Figure:
+def _figure(examples: dict[str, Driven]) -> Figure:
     start = next(iter(examples.values())).start
     grid = start.problem.map
     title = label(grid.name, grid.source)

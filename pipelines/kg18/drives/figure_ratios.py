@@ -10,21 +10,21 @@ from gapath.pipelines.numbers.text import percent
 from gapath.pipelines.page.figures import legend, looks, panels, render, style
 from gapath.pipelines.page.section import Figure, Section
 from gapath.pipelines.papers.names import label, rank
-from gapath.pipelines.reading.runs import Run
+from gapath.store.records import RunRecord
 
 TASK = "drive"
 EXPERIMENT = "drives"
 ORDER = 63
 
 
-def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
+def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
     """Draw the distribution of steps / shortest.
 
     Parameters
     ----------
     trials : DataFrame
         The drives of the experiment.
-    runs : sequence of Run
+    runs : sequence of RunRecord
         The runs they come from.
 
     Returns

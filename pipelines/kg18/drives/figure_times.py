@@ -11,7 +11,7 @@ from gapath.pipelines.page.figures import panels, render, style
 from gapath.pipelines.page.section import Figure, Section
 from gapath.pipelines.papers.kg18 import DRIVE_SECONDS, UNKNOWN_MAPS
 from gapath.pipelines.papers.names import label, rank
-from gapath.pipelines.reading.runs import Run
+from gapath.store.records import RunRecord
 
 TASK = "drive"
 EXPERIMENT = "drives"
@@ -22,14 +22,14 @@ _BINS = 20
 _COLORS = dict(zip(OUTCOMES, ("#0072B2", "#D55E00", "#000000"), strict=True))
 
 
-def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
+def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
     """Draw the histograms of KG18's computing time, as the paper does for its four maps.
 
     Parameters
     ----------
     trials : DataFrame
         The drives of the experiment.
-    runs : sequence of Run
+    runs : sequence of RunRecord
         The runs they come from.
 
     Returns

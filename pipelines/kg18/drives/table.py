@@ -4,26 +4,27 @@ from collections.abc import Sequence
 
 import pandas as pd
 
-from gapath.pipelines.numbers.drive_summary import rate, summarise_drives_by
+from gapath.pipelines.numbers.drive_summary import rate, summarise_drives
+from gapath.pipelines.numbers.summary import summarise_by
 from gapath.pipelines.numbers.text import NOTHING, middle, number
 from gapath.pipelines.page.section import RECONSTRUCTED, Section, Table
 from gapath.pipelines.papers.kg18 import DRIVE_SECONDS
 from gapath.pipelines.papers.names import label
-from gapath.pipelines.reading.runs import Run
+from gapath.store.records import RunRecord
 
 TASK = "drive"
 EXPERIMENT = "drives"
 ORDER = 60
 
 
-def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
+def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
     """Make the section on drives through KG18's unknown maps.
 
     Parameters
     ----------
     trials : DataFrame
         The drives of the experiment.
-    runs : sequence of Run
+    runs : sequence of RunRecord
         The runs they come from.
 
     Returns
@@ -32,7 +33,7 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
         How the drives ended and what they took, for each map and navigator.
     """
     trials = trials[trials["map_instance"] == 0]
-    rows = summarise_drives_by(trials, ["map", "map_source", "navigator"])
+    rows = summarise_by(trials, ["map", "map_source", "navigator"], summarise_drives)
     return Section(
         title="KG18 Sec. 6: drives through unknown maps",
         text=(

@@ -1,19 +1,15 @@
 """Where KG18's drives spend their evaluations: every call of its planners, from the logs."""
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import pandas as pd
 
-from gapath.errors import InputError
 from gapath.events import Called, Event
 from gapath.pipelines.numbers.text import NOTHING, number, percent
 from gapath.pipelines.page.section import RECONSTRUCTED, Section, Table
 from gapath.pipelines.papers.names import label, rank
-from gapath.pipelines.reading.logs import run_start
-from gapath.pipelines.reading.runs import Run
-from gapath.recorders.mcap import FILE, read_events
-from gapath.runs.config import task_from_settings
+from gapath.pipelines.reading.logs import events_of, read_logs, run_start
+from gapath.store.records import RunRecord
 
 TASK = "drive"
 EXPERIMENT = "drives"
@@ -24,14 +20,14 @@ _MAP = ["map", "map_source"]
 _PLANNER = ["part", "planner", "control_points"]
 
 
-def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
+def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
     """Make the section on the calls of KG18's planners.
 
     Parameters
     ----------
     trials : DataFrame
         The drives of the experiment.
-    runs : sequence of Run
+    runs : sequence of RunRecord
         The runs they come from, with their logs.
 
     Returns
@@ -39,16 +35,9 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section | None:
     Section or None
         What the calls of each planner came to; None if no run of KG18 has a log with calls.
     """
-    read, skipped = [], []
-    for run in runs:
-        known = run.manifest
-        if known["planner"] != _NAVIGATOR or known["map_instance"] or FILE not in known["files"]:
-            continue
-        try:
-            read.append(read_calls(read_events(run.folder / FILE)))
-        except InputError as error:
-            skipped.append((run.name, str(error)))
-    calls = pd.concat(read, ignore_index=True) if read else pd.DataFrame()
+    mine = [run for run in runs if run.known.method == _NAVIGATOR and not run.known.map_instance]
+    read, skipped = read_logs(mine, lambda run: read_calls(events_of(run)))
+    calls = pd.concat([calls for _, calls in read], ignore_index=True) if read else pd.DataFrame()
     if calls.empty and not skipped:
         return None
     return Section(
@@ -77,37 +66,37 @@ def read_calls(events: Iterator[Event]) -> pd.DataFrame:
     -------
     DataFrame
         One row a call: map, map_source, part, planner (its number in the part's list, from
-        1), control_points, found, adopted, obstacles (fields of the best path that are
-        obstacles or outside the map), evaluations.
+        1), control_points (missing for a planner without), found, adopted, obstacles (fields of
+        the best path that are obstacles or outside the map), evaluations.
 
     Raises
     ------
     InputError
-        If the log cannot be read, or its settings are not those of this version.
+        If the log does not begin with the run's start, or cannot be read.
     """
     start = run_start(events)
     grid = start.problem.map
-    navigator: Any = task_from_settings(start.settings)
-    navigator = navigator.navigator
-    planners = {"A": [navigator.retreat], "B": [navigator.explore], "C": navigator.replan}
     calls = [event for event in events if isinstance(event, Called)]
-    asked = [planners[call.part][call.index] for call in calls]
+    points = [start.settings.get(f"{_setting(call)}.control_points") for call in calls]
     return pd.DataFrame(
         {
             "map": grid.name,
             "map_source": grid.source,
             "part": [call.part for call in calls],
             "planner": [call.index + 1 for call in calls],
-            "control_points": [planner.control_points for planner in asked],
-            "found": [len(call.path) > 0 for call in calls],
+            "control_points": pd.array(points, dtype="Int64"),
+            "found": [call.answer.feasible for call in calls],
             "adopted": [call.adopted for call in calls],
-            # KG18 eq. (5): the weights of a whole path add up to less than one obstacle's VLN
-            "obstacles": [
-                int(call.cost // planner.vln) for call, planner in zip(calls, asked, strict=True)
-            ],
-            "evaluations": [call.evaluations for call in calls],
+            "obstacles": [call.answer.obstacles for call in calls],
+            "evaluations": [call.answer.evaluations for call in calls],
         }
     )
+
+
+def _setting(call: Called) -> str:
+    """Name the settings of the planner that was called."""
+    parts = {"A": "retreat", "B": "explore"}
+    return f"navigator.{parts.get(call.part, f'replan[{call.index}]')}"
 
 
 def summarise_calls(calls: pd.DataFrame) -> pd.DataFrame:
@@ -127,7 +116,7 @@ def summarise_calls(calls: pd.DataFrame) -> pd.DataFrame:
     """
     total = calls.groupby(_MAP)["evaluations"].sum()
     rows = []
-    for key, group in calls.groupby([*_MAP, *_PLANNER]):
+    for key, group in calls.groupby([*_MAP, *_PLANNER], dropna=False):
         failed = group[~group["found"]]
         spent = int(group["evaluations"].sum())
         rows.append(
@@ -151,7 +140,7 @@ def _table(rows: pd.DataFrame) -> Table:
         {
             "Map": label(row["map"], row["map_source"]),
             "Part": row["part"],
-            "Planner": f"{row['planner']} (k = {row['control_points']})",
+            "Planner": _planner(row),
             "Calls": number(row["calls"]),
             "Found, %": percent(row["found"]),
             "Adopted, %": percent(row["adopted"]),
@@ -171,6 +160,12 @@ def _table(rows: pd.DataFrame) -> Table:
         pd.DataFrame(shown),
         heads=3,
     )
+
+
+def _planner(row: pd.Series) -> str:
+    """Name a planner by its number in the part's list, and its control points if it has any."""
+    points = row["control_points"]
+    return str(row["planner"]) if pd.isna(points) else f"{row['planner']} (k = {points})"
 
 
 def _remarks(calls: pd.DataFrame) -> tuple[str, ...]:

@@ -1,17 +1,18 @@
 """What the paper leaves open: one decision of KG18's drive varied at a time."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import product
 from typing import Any
 
 import pandas as pd
 
-from gapath.pipelines.numbers.drive_summary import over_instances
+from gapath.events import Settings
+from gapath.pipelines.numbers.summary import over_instances
 from gapath.pipelines.numbers.text import middle, number, percent, percent_range
 from gapath.pipelines.page.section import Section, Table
 from gapath.pipelines.papers.names import label
-from gapath.pipelines.reading.runs import Run
+from gapath.store.records import Manifest, RunRecord
 
 TASK = "drive"
 EXPERIMENT = "drive_choices"
@@ -37,14 +38,14 @@ _PRESETS = {
 _VALUES = {"True": "yes", "False": "no", "one_side": "not between two", "forbid": "forbidden"}
 
 
-def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
+def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
     """Make the section on the decisions that the paper leaves open.
 
     Parameters
     ----------
     trials : DataFrame
         The drives of the experiment.
-    runs : sequence of Run
+    runs : sequence of RunRecord
         The runs they come from.
 
     Returns
@@ -52,8 +53,9 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
     Section
         A row a decision, the one without any first.
     """
+    methods = {run.known.method: run.known for run in runs}
     tables = tuple(
-        _table(group, str(name), source)
+        _table(group, str(name), source, methods)
         for (name, source), group in trials.groupby(["map", "map_source"], sort=True)
     )
     return Section(
@@ -71,47 +73,45 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
     )
 
 
-def varied(navigator: str) -> dict[str, str]:
-    """Tell from a navigator's name what differs from KG18 as described.
+def varied(preset: str, changes: Settings) -> dict[str, str]:
+    """Tell what differs from KG18 as described.
 
     Parameters
     ----------
-    navigator : str
-        A preset's name, in brackets the settings that differ from the preset.
+    preset : str
+        Name of the navigator's YAML.
+    changes : mapping of str to str, int, float, bool or None
+        What differs from the YAML.
 
     Returns
     -------
     dict of str to str
         Decision -> value; none for "kg18". Planners of a list are taken together.
     """
-    preset, _, settings = navigator.removesuffix("]").partition("[")
     changed = dict(_PRESETS.get(preset, {} if preset == "kg18" else {"Navigator": label(preset)}))
-    for setting in filter(None, settings.split(",")):
-        name, _, value = setting.partition("=")
-        name = re.sub(r"\[\d+\]", "", name)
-        changed[_DECISIONS.get(name, name)] = _VALUES.get(value, value)
+    for setting, value in sorted(changes.items()):
+        name = re.sub(r"\[\d+\]", "", setting)
+        changed[_DECISIONS.get(name, name)] = _VALUES.get(str(value), str(value))
     return changed
 
 
-def _table(trials: pd.DataFrame, name: str, source: str) -> Table:
+def _table(trials: pd.DataFrame, name: str, source: str, methods: Mapping[str, Manifest]) -> Table:
     groups = dict(list(trials.groupby("navigator", sort=True)))
     base = min(groups, key=lambda navigator: (navigator != "kg18", navigator))
     reference = _rates(groups[base])
     rows = []
     for navigator, group in groups.items():
-        changes = varied(navigator)
-        rate, (low, high), instances = over_instances(group)
+        known = methods[navigator]
+        changes = varied(known.preset, known.changes)
+        reached = over_instances(group, "reached", "reached")
+        del reached["always"], reached["never"]
         change = (_rates(group) - reference).dropna()
         ratio = group.groupby("map_instance")["steps_ratio"].median()
         row = {
             "navigator": navigator,
             "decision": "; ".join(changes) or "as described",
             "value": "; ".join(dict.fromkeys(changes.values())),
-            "instances": instances,
-            "n": len(group),
-            "reached": rate,
-            "reached_low": low,
-            "reached_high": high,
+            **reached,
             "better": int((change > 0).sum()),
             "worse": int((change < 0).sum()),
             "calls_a": group["calls_a"].mean(),

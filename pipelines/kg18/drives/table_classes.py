@@ -4,11 +4,12 @@ from collections.abc import Sequence
 
 import pandas as pd
 
-from gapath.pipelines.numbers.drive_summary import over_instances, summarise_drives_by
+from gapath.pipelines.numbers.drive_summary import summarise_drives
+from gapath.pipelines.numbers.summary import over_instances, summarise_by
 from gapath.pipelines.numbers.text import middle, number, percent, percent_range
 from gapath.pipelines.page.section import RECONSTRUCTED, Section, Table
 from gapath.pipelines.papers.names import label, rank
-from gapath.pipelines.reading.runs import Run
+from gapath.store.records import RunRecord
 
 TASK = "drive"
 EXPERIMENT = "drive_classes"
@@ -17,14 +18,14 @@ ORDER = 70
 _BY = ["map", "map_source", "navigator"]
 
 
-def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
+def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
     """Make the section on the classes of KG18's unknown maps.
 
     Parameters
     ----------
     trials : DataFrame
         The drives of the experiment.
-    runs : sequence of Run
+    runs : sequence of RunRecord
         The runs they come from.
 
     Returns
@@ -49,8 +50,8 @@ def section(trials: pd.DataFrame, runs: Sequence[Run]) -> Section:
     )
 
 
-def summarise_classes(trials: pd.DataFrame) -> pd.DataFrame:
-    """Summarise each class of maps and navigator over the class's instances.
+def summarise_class(trials: pd.DataFrame) -> dict[str, float]:
+    """Summarise a navigator's drives over the instances of a class.
 
     Parameters
     ----------
@@ -59,34 +60,15 @@ def summarise_classes(trials: pd.DataFrame) -> pd.DataFrame:
 
     Returns
     -------
-    DataFrame
-        map, map_source, navigator, instances, n (drives), reached (the mean of the instances'
-        rates) and its interval over instances, how many instances were always or never
-        reached, quartiles of steps / shortest and of the seconds.
+    dict
+        What `over_instances` gives, reached being the rate; quartiles of steps / shortest and of
+        the seconds.
     """
-    rows = []
-    for key, group in trials.groupby(_BY):
-        rate, (low, high), instances = over_instances(group)
-        rates = group.groupby("map_instance")["reached"].mean()
-        quartiles = group[["steps_ratio", "compute_time_s"]].quantile([0.25, 0.5, 0.75])
-        rows.append(
-            {
-                **dict(zip(_BY, key, strict=True)),
-                "instances": instances,
-                "n": len(group),
-                "reached": rate,
-                "reached_low": low,
-                "reached_high": high,
-                "always": int((rates == 1).sum()),
-                "never": int((rates == 0).sum()),
-                **dict(zip(("steps_ratio_q1", "steps_ratio_median", "steps_ratio_q3"),
-                           quartiles["steps_ratio"], strict=True)),
-                **dict(zip(("seconds_q1", "seconds_median", "seconds_q3"),
-                           quartiles["compute_time_s"], strict=True)),
-            }
-        )  # fmt: skip
-    rows.sort(key=lambda row: [rank(str(row[name])) for name in _BY])
-    return pd.DataFrame(rows)
+    row = over_instances(trials, "reached", "reached")
+    for name, column in (("steps_ratio", "steps_ratio"), ("seconds", "compute_time_s")):
+        for key, level in (("q1", 0.25), ("median", 0.5), ("q3", 0.75)):
+            row[f"{name}_{key}"] = trials[column].quantile(level)
+    return row
 
 
 def failing_instances(trials: pd.DataFrame) -> pd.DataFrame:
@@ -102,7 +84,7 @@ def failing_instances(trials: pd.DataFrame) -> pd.DataFrame:
     DataFrame
         map, map_source, navigator, map_instance and the columns of `summarise_drives`.
     """
-    rows = summarise_drives_by(trials, [*_BY, "map_instance"])
+    rows = summarise_by(trials, [*_BY, "map_instance"], summarise_drives)
     failed = rows[rows["reached"] < rows["n"]]
     order = [(rank(row["map"]), rank(row["navigator"])) for _, row in failed.iterrows()]
     failed = failed.assign(order=order).sort_values(["order", "map_instance"], kind="stable")
@@ -110,7 +92,7 @@ def failing_instances(trials: pd.DataFrame) -> pd.DataFrame:
 
 
 def _classes(trials: pd.DataFrame) -> Table:
-    rows = summarise_classes(trials)
+    rows = summarise_by(trials, _BY, summarise_class)
     shown = [
         {
             "Class": label(row["map"], row["map_source"]),

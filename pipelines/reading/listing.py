@@ -1,0 +1,46 @@
+"""The list of run folders, for people."""
+
+from collections.abc import Iterable
+
+from gapath.store.records import RunRecord
+
+
+def listing(runs: Iterable[RunRecord]) -> list[dict[str, str]]:
+    """Describe run folders for people.
+
+    Parameters
+    ----------
+    runs : iterable of RunRecord
+        The runs.
+
+    Returns
+    -------
+    list of dict
+        One a run: key, experiment, map, planner (or navigator), trials, state, date and size;
+        "?" where no manifest says it.
+    """
+    rows = []
+    for run in runs:
+        known = run.manifest
+        instance = f" #{known.map_instance}" if known and known.map_instance else ""
+        rows.append(
+            {
+                "key": run.folder.name,
+                "experiment": run.folder.parent.name,
+                "map": known.map + instance if known else "?",
+                "planner": known.method if known else "?",
+                "trials": str(known.trials) if known else "?",
+                "state": run.state,
+                "date": run.date[:16].replace("T", " "),
+                "size": _size(run.bytes),
+            }
+        )
+    return rows
+
+
+def _size(count: float) -> str:
+    for unit in ("B", "kB", "MB"):
+        if count < 1000:
+            return f"{count:.0f} {unit}"
+        count /= 1000
+    return f"{count:.1f} GB"
