@@ -139,10 +139,10 @@ def find_sections() -> list[ModuleType]:
     Returns
     -------
     list of module
-        Those of pipelines, and entry points of installed packages in the group ``gapath.tables``.
+        Those of pipelines, and entry points of installed packages in the group ``gapath.pipelines``.
     """
     own = [module for module in _find("table*.py", "figure_*.py") if hasattr(module, "section")]
-    others = [imported(entry) for entry in entry_points("gapath.tables").values()]
+    others = [imported(entry) for entry in entry_points("gapath.pipelines").values()]
     return sorted([*own, *others], key=lambda module: module.ORDER)
 
 

@@ -75,7 +75,8 @@ def make_trials(grid: GridMap, planner: str, experiment: str, seed: int, n: int)
     cost = np.where(feasible, 11.5 + random.integers(0, 4, n), 200012.0)
     return pd.DataFrame({
         "experiment": experiment, "map": grid.name, "map_instance": grid.instance,
-        "map_source": grid.source, "map_digest": grid.digest, "width": grid.cols, "height": grid.rows,
+        "map_source": grid.source, "map_digest": grid.digest,
+        "width": grid.cols, "height": grid.rows,
         "start": str(grid.start), "target": str(grid.target),
         "corner_cutting": "allow", "planner": planner, "seed": seed, "trial": np.arange(n),
         "status": np.where(feasible, "found", "not_found"), "feasible": feasible, "cost": cost,
@@ -134,7 +135,8 @@ def make_drives(grid: GridMap, navigator: str, experiment: str, n: int) -> pd.Da
     steps = 21 + random.integers(0, 5, n) * is_ga
     return pd.DataFrame({
         "experiment": experiment, "map": grid.name, "map_instance": grid.instance,
-        "map_source": grid.source, "map_digest": grid.digest, "width": grid.cols, "height": grid.rows,
+        "map_source": grid.source, "map_digest": grid.digest,
+        "width": grid.cols, "height": grid.rows,
         "start": str(grid.start), "target": str(grid.target),
         "corner_cutting": "allow", "navigator": navigator, "seed": 0, "trial": np.arange(n),
         "outcome": np.where(reached, "reached", "returned"), "reached": reached,
