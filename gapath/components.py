@@ -38,7 +38,7 @@ def build(group: str, values: dict[str, Any], where: str) -> Any:
     target = load(group, str(kind))
     made = {
         name: with_planners(value, f"{where}.{name}")
-        for name, value in checked(target, values, where).items()
+        for name, value in checked(target, expanded(values), where).items()
     }
     try:
         return target(**made)
@@ -49,11 +49,38 @@ def build(group: str, values: dict[str, Any], where: str) -> Any:
         raise InputError(place, error.value, error.expected) from None
 
 
-def with_planners(value: Any, where: str) -> Any:
-    """Make the planners that a component's settings describe.
+def expanded(value: Any) -> Any:
+    """Write settings out: planners that stand among them, with all their values.
 
     A planner among settings is a mapping with ``base``, the name of a YAML in
     ``conf/planner``, and the values that replace the YAML's.
+
+    Parameters
+    ----------
+    value : object
+        Nested settings.
+
+    Returns
+    -------
+    object
+        The settings, every such mapping replaced by the planner's ``kind`` and settings: whoever
+        reads them later asks no YAML.
+
+    Raises
+    ------
+    InputError
+        If there is no such YAML.
+    """
+    if isinstance(value, list):
+        return [expanded(item) for item in value]
+    if not isinstance(value, dict):
+        return value
+    own = {key: expanded(item) for key, item in value.items() if key != "base"}
+    return expanded(yaml_values("planner", value["base"])) | own if "base" in value else own
+
+
+def with_planners(value: Any, where: str) -> Any:
+    """Make the planners that a component's settings describe, see `expanded`.
 
     Parameters
     ----------
@@ -65,13 +92,12 @@ def with_planners(value: Any, where: str) -> Any:
     Returns
     -------
     object
-        The setting, every such mapping in it replaced by a planner.
+        The setting, every mapping with a ``kind`` in it replaced by a planner.
     """
     if isinstance(value, list):
         return [with_planners(item, f"{where}[{i}]") for i, item in enumerate(value)]
-    if isinstance(value, dict) and "base" in value:
-        own = {key: item for key, item in value.items() if key != "base"}
-        return build("planner", yaml_values("planner", value["base"]) | own, where)
+    if isinstance(value, dict) and "kind" in value:
+        return build("planner", value, where)
     return value
 
 

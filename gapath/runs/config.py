@@ -8,7 +8,7 @@ from typing import Any
 
 from omegaconf import DictConfig, OmegaConf
 
-from gapath.components import build, typed
+from gapath.components import build, expanded, typed
 from gapath.discovery import kinds
 from gapath.errors import require
 from gapath.events import Recorder, Settings
@@ -144,7 +144,7 @@ def make_run(config: DictConfig, choices: Mapping[str, str | None]) -> Run:
     useful = task.threaded or root.threads == 1
     require(useful, "threads", root.threads, f"1 with task={task.name}, which they do not speed up")
     common = {key: value for key, value in asdict(root).items() if key not in HOW}
-    settings = common | {group: chosen[group] for group in task.groups}
+    settings = common | {group: expanded(chosen[group]) for group in task.groups}
     recorders: list[Recorder] = [
         build("recorder", values, f"recorder.{name}") for name, values in root.recorder.items()
     ]

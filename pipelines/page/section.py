@@ -139,7 +139,7 @@ def find_sections() -> list[ModuleType]:
     Returns
     -------
     list of module
-        Those of pipelines, and entry points of installed packages in the group ``gapath.pipelines``.
+        Those of pipelines, and entry points of installed packages (`gapath.discovery`).
     """
     own = [module for module in _find("table*.py", "figure_*.py") if hasattr(module, "section")]
     others = [imported(entry) for entry in entry_points("gapath.pipelines").values()]

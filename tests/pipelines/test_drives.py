@@ -3,8 +3,6 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
-import yaml
-from gapath.pipelines.reading.runs import find_runs
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -21,11 +19,12 @@ from gapath.pipelines.numbers.drive_summary import over_instances, summarise_dri
 from gapath.pipelines.numbers.statistics import wilson
 from gapath.pipelines.reading.collect import collect
 from gapath.pipelines.report.report import make_report
-from gapath.pipelines.sweeps import table_drives as table_drives_overview
-from gapath.problem import PlanStatus, Problem
+from gapath.pipelines.sweeps import table as table_drives_overview
+from gapath.problem import Answer, PlanStatus, Problem
 from gapath.recorders.mcap import FILE, read_events
+from gapath.store.records import find_runs
 
-from .conftest import drive_settings, make_map, make_path, write_manifest
+from .conftest import drive_settings, make_map, make_path, sign
 
 TABLES = (
     table_drives, table_drive_calls, table_drive_classes, table_drive_choices,
@@ -36,7 +35,7 @@ FIGURES = (figure_drive_times, figure_drive_paths, figure_drive_ratios)
 
 @pytest.fixture(scope="module")
 def case(drive_outputs):
-    return collect(drive_outputs).drives, find_runs(drive_outputs)
+    return collect(drive_outputs).trials["drive"], find_runs(drive_outputs)
 
 
 def of(case, experiment):
@@ -60,7 +59,8 @@ def drives_of(**columns):
 def test_plans_and_drives_do_not_mix(tmp_path, make_run, make_drive_run):
     make_run(tmp_path, "mine", "kg18_test1", "ga1", n=3, log=False)
     make_drive_run(tmp_path, "mine", "kg18_map1", "kg18", n=4)
-    plans, drives, skipped = collect(tmp_path)
+    trials, skipped = collect(tmp_path)
+    plans, drives = trials["plan"], trials["drive"]
     assert (len(plans), len(drives), skipped) == (3, 4, [])
     assert "navigator" not in plans
     assert "planner" not in drives
@@ -73,15 +73,13 @@ def test_plans_and_drives_do_not_mix(tmp_path, make_run, make_drive_run):
 @pytest.mark.parametrize("task", ["fly", 3, None])
 def test_a_task_that_nobody_knows_is_named(tmp_path, make_drive_run, task):
     run = make_drive_run(tmp_path, "mine", "kg18_map1", "kg18")
-    write_manifest(
-        run, map="kg18_map1", map_instance=0, planner="kg18", seed=0, trials=12, task=task
-    )
+    sign(run, task=task)
     assert "manifest.json, task" in find_runs(tmp_path)[0].fault
 
 
 def test_rows_of_the_other_task_are_named(tmp_path, make_drive_run):
     run = make_drive_run(tmp_path, "mine", "kg18_map1", "kg18")
-    write_manifest(run, map="kg18_map1", map_instance=0, planner="kg18", seed=0, trials=12)
+    sign(run, task="plan")
     assert "no column" in collect(tmp_path).skipped[0].reason
 
 
@@ -89,21 +87,8 @@ def test_rows_of_the_other_task_are_named(tmp_path, make_drive_run):
 def test_only_runs_of_the_same_setting_supersede_each_other(tmp_path, make_drive_run, settings):
     for n, setting in enumerate(settings, start=2):
         run = make_drive_run(tmp_path, f"x{n}", "kg18_map1", "kg18", n=n)
-        write_manifest(
-            run, map="kg18_map1", map_instance=0, planner="kg18", seed=0, trials=n, task="drive",
-            experiment="x", setting=setting,
-        )  # fmt: skip
-    assert len(collect(tmp_path).drives) == (5 if settings == ("a", "b") else 3)
-
-
-def test_rows_without_start_and_target_are_older_ones(tmp_path, make_drive_run):
-    run = make_drive_run(tmp_path, "mine", "kg18_map1", "kg18")
-    rows = pd.read_parquet(run / "trials.parquet").drop(columns=["start", "target"])
-    rows.to_parquet(run / "trials.parquet")
-    write_manifest(
-        run, map="kg18_map1", map_instance=0, planner="kg18", seed=0, trials=12, task="drive"
-    )
-    assert set(collect(tmp_path).drives["target"]) == {""}
+        sign(run, experiment="x", setting=setting)
+    assert len(collect(tmp_path).trials["drive"]) == (5 if settings == ("a", "b") else 3)
 
 
 def test_a_summary_worked_by_hand():
@@ -205,20 +190,20 @@ def test_calls_worked_by_hand(case):
     assert vain in section.remarks[0].lower()
 
 
-def test_obstacles_count_by_the_settings_of_the_log():
+def test_obstacles_are_counted_by_the_log_whatever_they_are_shown_to_cost():
+    """A small VLN, of which more go into the weights of a path than there are obstacles on it."""
     grid = make_map("kg18_map4")
-    settings = yaml.safe_load(drive_settings("kg18"))
-    settings["navigator"]["retreat"]["vln"] = 1000
+    settings = drive_settings("kg18")
     start = RunStarted(
-        "drives", "kg18", "drive", Problem(grid, grid.start, grid.target), 0, 1,
-        yaml.safe_dump(settings), {}, make_path(0), 11.0,
+        "drives", "kg18", "drive", Problem(grid, grid.start, grid.target), 0, 1, settings, {},
+        make_path(0), 11.0,
     )  # fmt: skip
     nothing = np.empty((0, 2), dtype=np.int32)
-    calls = [
-        Called(1, 0, part, 0, False, PlanStatus.NOT_FOUND, 3014.5, 9, 50, 0, nothing)
-        for part in "AC"
-    ]
-    assert list(table_drive_calls.read_calls(iter([start, *calls]))["obstacles"]) == [3, 0]
+    answer = Answer(PlanStatus.NOT_FOUND, nothing, 14.5, 3, vln=1.0, epochs=9, evaluations=50)
+    calls = [Called(1, 0, part, index, False, answer) for part, index in (("A", 0), ("C", 3))]
+    read = table_drive_calls.read_calls(iter([start, *calls]))
+    assert list(read["obstacles"]) == [3, 3]
+    assert list(read["control_points"]) == [5, 8]
 
 
 def test_calls_of_a_log_that_cannot_be_read_are_named(tmp_path, make_drive_run):
@@ -229,9 +214,7 @@ def test_calls_of_a_log_that_cannot_be_read_are_named(tmp_path, make_drive_run):
     assert section.tables == ()
     assert section.skipped[0][0] == f"drives/{folder.name}"
     log.unlink()
-    write_manifest(
-        folder, map="kg18_map1", map_instance=0, planner="kg18", seed=0, trials=12, task="drive"
-    )
+    sign(folder)
     assert table_drive_calls.section(pd.DataFrame(), find_runs(tmp_path)) is None
 
 
@@ -241,7 +224,7 @@ def test_classes_count_instances_and_name_those_that_failed():
         reached=[True] * 5 + [False] * 3,
         outcome=["reached"] * 5 + ["returned"] * 3,
     )
-    (row,) = table_drive_classes.summarise_classes(mine).to_dict("records")
+    row = table_drive_classes.summarise_class(mine)
     assert row["reached"] == pytest.approx(0.5)
     assert (row["reached_low"], row["reached_high"]) == pytest.approx(wilson(0.5, 3))
     assert (row["instances"], row["n"], row["always"], row["never"]) == (3, 8, 1, 1)
@@ -260,22 +243,22 @@ def test_classes_without_a_failure_have_no_second_table():
 
 
 @pytest.mark.parametrize(
-    ("name", "expected"),
+    ("preset", "changes", "expected"),
     [
-        ("kg18", {}),
-        ("kg18_fast", {"Least epochs, C": "3"}),
-        ("kg18[sensor.range=8]", {"Sensor range, layers": "8"}),
-        ("kg18[sensor.occlusion=True]", {"Obstacles hide what lies behind": "yes"}),
-        ("kg18[explore.sampling=span,replan[0].sampling=span,replan[3].sampling=span]",
-         {"Way points per": "span"}),
-        ("kg18_astar[return_penalty=3.0]",
+        ("kg18", {}, {}),
+        ("kg18_fast", {}, {"Least epochs, C": "3"}),
+        ("kg18", {"sensor.range": 8}, {"Sensor range, layers": "8"}),
+        ("kg18", {"sensor.occlusion": True}, {"Obstacles hide what lies behind": "yes"}),
+        ("kg18", {"explore.sampling": "span", "replan[0].sampling": "span",
+                  "replan[3].sampling": "span"}, {"Way points per": "span"}),
+        ("kg18_astar", {"return_penalty": 3.0},
          {"Last planner, C": "A*", "Penalty on the way back, A": "3.0"}),
-        ("kg18[step_limit=50]", {"step_limit": "50"}),
-        ("dstar_lite", {"Navigator": "D* Lite"}),
+        ("kg18", {"step_limit": 50}, {"step_limit": "50"}),
+        ("dstar_lite", {}, {"Navigator": "D* Lite"}),
     ],
 )  # fmt: skip
-def test_what_a_name_says_was_varied(name, expected):
-    assert table_drive_choices.varied(name) == expected
+def test_what_was_varied_is_read_from_what_differs(preset, changes, expected):
+    assert table_drive_choices.varied(preset, changes) == expected
 
 
 def test_choices_are_held_against_the_first_row(case):
@@ -294,7 +277,7 @@ def test_choices_are_held_against_the_first_row(case):
 
 def test_trails_are_those_of_the_log(case):
     _, runs = of(case, "drives")
-    run = next(run for run in runs if run.manifest["map"] == "kg18_map4")
+    run = next(run for run in runs if run.known.map == "kg18_map4")
     example = figure_drive_paths.read_trails(read_events(run.folder / FILE), {0, 3, 7})
     places: dict[int, list[tuple[int, int]]] = {0: [], 3: [], 7: []}
     for event in read_events(run.folder / FILE):

@@ -1,7 +1,6 @@
 import numpy as np
 import pandas as pd
 import pytest
-from gapath.pipelines.reading.runs import find_runs
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -11,11 +10,12 @@ from gapath.pipelines.kg18 import figure_convergence, figure_evaluations, figure
 from gapath.pipelines.page.figures import looks
 from gapath.pipelines.reading.collect import collect
 from gapath.problem import PlanStatus
+from gapath.store.records import find_runs
 
 
 @pytest.fixture(scope="module")
 def case(outputs):
-    frame = collect(outputs).plans
+    frame = collect(outputs).trials["plan"]
     runs = [run for run in find_runs(outputs) if run.folder.parent.name == "table1"]
     return frame[frame["experiment"] == "table1"], runs
 

@@ -3,7 +3,6 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
-from gapath.pipelines.reading.runs import find_runs
 
 from gapath.api import load_map
 from gapath.components import build
@@ -23,6 +22,7 @@ from gapath.problem import Problem
 from gapath.recorders import mcap
 from gapath.runs.config import Run
 from gapath.runs.experiment import execute
+from gapath.store.records import find_runs
 from gapath.tasks.plan import Task as PlanTask
 
 PLANNERS = {
@@ -65,7 +65,8 @@ def outputs(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def plans(outputs):
-    plans, _, skipped = collect(outputs)
+    trials, skipped = collect(outputs)
+    plans = trials["plan"]
     assert not skipped
     return plans
 
@@ -148,7 +149,7 @@ def test_no_method_beats_the_shortest_path_of_its_graph(plans):
 
 def test_figures_are_made_of_logs(outputs, plans):
     runs = find_runs(outputs)
-    mine = [r for r in runs if r.manifest["experiment"] == "m22"]
+    mine = [r for r in runs if r.known.experiment == "m22"]
     for module in (figure_m22_pipeline, figure_m22_convergence, figure_m22_paths):
         section = module.section(of(plans, "m22"), mine)
         assert len(section.figures) == 1 and not section.skipped
@@ -174,7 +175,7 @@ def test_a_grown_picture_has_the_maps_size(outputs):
 
 
 def test_the_u_fails_with_axes_and_works_with_corners(outputs, plans):
-    runs = [r for r in find_runs(outputs) if r.manifest["experiment"] == "m22_concave"]
+    runs = [r for r in find_runs(outputs) if r.known.experiment == "m22_concave"]
     section = figure_m22_concave.section(of(plans, "m22_concave"), runs)
     shown = section.tables[0].shown.set_index("Method")
     assert shown.loc["M22"]["No path in the graph, %"] == "100"
@@ -183,7 +184,7 @@ def test_the_u_fails_with_axes_and_works_with_corners(outputs, plans):
 
 
 def test_damaged_logs_are_skipped_and_named(outputs, plans, tmp_path):
-    runs = [r for r in find_runs(outputs) if r.manifest["planner"] == "visibility_ga"]
+    runs = [r for r in find_runs(outputs) if r.known.method == "visibility_ga"]
     broken = []
     for i, good in enumerate(runs):
         folder = tmp_path / str(i)

@@ -3,12 +3,18 @@ import json
 import shutil
 
 import pytest
-from gapath.pipelines.reading.runs import find_runs, summary
 
 from gapath.errors import InputError
 from gapath.pipelines.reading.collect import collect
+from gapath.pipelines.reading.listing import listing
+from gapath.store.records import find_runs
 
-from .conftest import write_manifest, write_status
+from .conftest import sign, write_status
+
+
+def plans(folder):
+    trials, skipped = collect(folder)
+    return trials["plan"], skipped
 
 
 @pytest.fixture
@@ -23,8 +29,8 @@ def only(folder):
 
 def test_a_whole_run(run):
     found = only(run)
-    assert (found.state, found.fault, found.manifest["planner"]) == ("done", "", "ga1")
-    (row,) = summary([found])
+    assert (found.state, found.fault, found.known.method) == ("done", "", "ga1")
+    (row,) = listing([found])
     assert row["key"] == run.name
     assert (row["map"], row["trials"], row["date"]) == ("kg18_test1", "5", "2026-01-01 12:00")
 
@@ -34,7 +40,7 @@ def test_unfinished_runs_are_not_used_and_say_why(run, state):
     write_status(run, state, text="Traceback:\n  ...\nOSError: disk full")
     found = only(run)
     assert (found.state, found.fault) == (state, f"{state}: OSError: disk full")
-    frame, _, skipped = collect(run.parent.parent)
+    frame, skipped = plans(run.parent.parent)
     assert frame.empty
     assert skipped == [(f"table1/{run.name}", found.fault)]
 
@@ -64,7 +70,7 @@ def test_no_status_is_unknown(run):
 def test_a_run_without_manifest_still_shows_in_the_list(run):
     write_status(run, "running")
     (run / "manifest.json").unlink()
-    (row,) = summary([only(run)])
+    (row,) = listing([only(run)])
     assert (row["map"], row["planner"], row["state"]) == ("?", "?", "interrupted")
 
 
@@ -103,7 +109,7 @@ def test_no_folder_and_no_runs(tmp_path):
 
 
 def test_all_trials_are_collected_failures_too(outputs):
-    frame, _, skipped = collect(outputs)
+    frame, skipped = plans(outputs)
     assert skipped == []
     assert len(frame) == 4 * 5 * (20 + 3 * 4)
     assert frame["key"].nunique() == 4 * 5 * 4
@@ -117,7 +123,7 @@ def test_the_newest_run_of_a_setting_counts_alone(tmp_path, make_run):
     for key, date, n in [("b", "2026-01-02T00:00", 7), ("a", "2026-01-03T00:00", 3)]:
         make_run(tmp_path, "table1", "kg18_test1", "ga1", n=n, log=False, date=date, key=key)
     make_run(tmp_path, "table1", "kg18_test1", "ga1", n=4, seed=1, log=False)
-    frame, _, skipped = collect(tmp_path)
+    frame, skipped = plans(tmp_path)
     assert sorted(frame.groupby("seed").size()) == [3, 4]
     assert [run for run, _ in skipped] == ["table1/b"]
     assert "table1/a" in skipped[0].reason
@@ -129,7 +135,7 @@ def test_a_broken_newer_run_does_not_hide_a_whole_older_one(tmp_path, make_run):
         tmp_path, "table1", "kg18_test1", "ga1", log=False, key="new", date="2026-02-01T00:00"
     )
     (new / "config.yaml").unlink()
-    frame, _, skipped = collect(tmp_path)
+    frame, skipped = plans(tmp_path)
     assert set(frame["key"]) == {"old"}
     assert [run for run, _ in skipped] == ["table1/new"]
 
@@ -158,8 +164,8 @@ def test_rows_of_another_shape_are_named(run, spoil, named):
     import pandas as pd
 
     spoil(pd.read_parquet(run / "trials.parquet")).to_parquet(run / "trials.parquet")
-    write_manifest(run, map="kg18_test1", map_instance=0, planner="ga1", seed=0, trials=5)
-    frame, _, skipped = collect(run.parent.parent)
+    sign(run)
+    frame, skipped = plans(run.parent.parent)
     assert frame.empty
     assert named in skipped[0].reason
 
@@ -168,8 +174,8 @@ def test_a_file_that_is_no_parquet_is_named_and_the_others_are_read(run, make_ru
     outputs = run.parent.parent
     make_run(outputs, "table1", "kg18_test2", "ga1", n=3, log=False)
     (run / "trials.parquet").write_bytes(b"no parquet")
-    write_manifest(run, map="kg18_test1", map_instance=0, planner="ga1", seed=0, trials=5)
-    frame, _, skipped = collect(outputs)
+    sign(run)
+    frame, skipped = plans(outputs)
     assert len(frame) == 3
     assert "readable Parquet" in skipped[0].reason
     shutil.rmtree(run)

@@ -3,7 +3,6 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
-from gapath.pipelines.reading.runs import find_runs
 
 from gapath.components import build
 from gapath.discovery import yaml_values
@@ -18,6 +17,7 @@ from gapath.problem import CornerCutting, Problem
 from gapath.recorders import mcap
 from gapath.runs.config import Run
 from gapath.runs.experiment import execute
+from gapath.store.records import find_runs
 from gapath.tasks.plan import Task as PlanTask
 
 PERCENT = {  # as the paper prints them, by search space
@@ -171,7 +171,7 @@ def outputs(tmp_path_factory):
 
 
 def test_the_best_path_of_a_run_is_free_and_has_the_fewest_turns(outputs):
-    frame = collect(outputs).plans
+    frame = collect(outputs).trials["plan"]
     for run in find_runs(outputs):
         best = figure_s04_paths.read_best(run)
         mine = frame[frame["map"] == run.manifest["map"]]
@@ -194,7 +194,7 @@ def test_collisions_are_obstacles_and_what_lies_outside(outputs):
 
 
 def test_search_spaces_are_drawn_from_logs(outputs, tmp_path):
-    frame, runs = collect(outputs).plans, find_runs(outputs)
+    frame, runs = collect(outputs).trials["plan"], find_runs(outputs)
     section = figure_s04_paths.section(frame, runs)
     (figure,) = section.figures
     assert "SPSet07, Hermanu 2002" in figure.alt and "fields in obstacles" in figure.alt
@@ -208,5 +208,5 @@ def test_a_log_that_cannot_be_read_is_named(outputs, monkeypatch):
         raise InputError(path, "damaged", "a whole log")
 
     monkeypatch.setattr(figure_s04_paths, "read_events", broken)
-    section = figure_s04_paths.section(collect(outputs).plans, find_runs(outputs))
+    section = figure_s04_paths.section(collect(outputs).trials["plan"], find_runs(outputs))
     assert len(section.skipped) == 2 and not section.figures

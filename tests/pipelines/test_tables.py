@@ -10,7 +10,7 @@ from gapath.pipelines.page.section import Table
 from gapath.pipelines.papers.kg18 import SECONDS, implied_epochs
 from gapath.pipelines.papers.names import label, rank
 from gapath.pipelines.reading.collect import collect
-from gapath.pipelines.sweeps import table_plans as table_overview
+from gapath.pipelines.sweeps import table as table_overview
 
 
 def trials(**columns):
@@ -79,7 +79,7 @@ def test_the_papers_seconds_as_epochs():
 
 
 def test_table1_puts_the_paper_beside_ours(outputs):
-    frame = collect(outputs).plans
+    frame = collect(outputs).trials["plan"]
     mine = frame[frame["experiment"] == "table1"]
     section = table1.section(mine, [])
     beside, effort = section.tables
@@ -121,7 +121,7 @@ def test_classes_count_instances_not_trials():
 
 
 def test_overview_has_a_row_for_each_setting(outputs):
-    frame = collect(outputs).plans
+    frame = collect(outputs).trials["plan"]
     (table,) = table_overview.section(frame, []).tables
     assert len(table.shown) == 40
     assert table.data["n"].sum() == len(frame)
@@ -143,7 +143,7 @@ def test_the_three_forms_of_a_table():
 
 
 def test_every_latex_table_is_ascii(outputs):
-    frame = collect(outputs).plans
+    frame = collect(outputs).trials["plan"]
     for module in (table1, table_classes, table_overview):
         for table in module.section(frame, []).tables:
             assert table.latex().isascii()
