@@ -1,4 +1,7 @@
-"""The one exception that means "the input is wrong"."""
+"""The one exception that means "the input is wrong", and what raises it."""
+
+MOST_MEMORY = 1 << 30
+"""Bytes that a planner's settings may ask for."""
 
 
 class InputError(ValueError):
@@ -46,3 +49,58 @@ def require(condition: bool, where: object, value: object, expected: str) -> Non
     """
     if not condition:
         raise InputError(where, value, expected)
+
+
+class Checks:
+    """Checks the settings of a component, one call a setting.
+
+    Parameters
+    ----------
+    settings : object
+        Has the settings as attributes.
+    group : str
+        The configuration group that they belong to, e.g. "planner".
+    """
+
+    def __init__(self, settings: object, group: str) -> None:
+        self.settings, self.group = settings, group
+
+    def __call__(self, name: str, good: bool, expected: str) -> None:
+        """Raise `InputError` unless a setting is good.
+
+        Parameters
+        ----------
+        name : str
+            The setting.
+        good : bool
+            What must be true.
+        expected : str
+            What would be right.
+
+        Raises
+        ------
+        InputError
+            If it is not good; names the setting and its value.
+        """
+        require(good, f"{self.group}.{name}", getattr(self.settings, name), expected)
+
+
+def require_memory(needed: int, where: str, value: str) -> None:
+    """Raise `InputError` if settings need more than `MOST_MEMORY`.
+
+    Parameters
+    ----------
+    needed : int
+        Bytes.
+    where : str
+        The configuration fields.
+    value : str
+        What was found there.
+
+    Raises
+    ------
+    InputError
+        If it is too much; says how much.
+    """
+    expected = f"settings that need at most {MOST_MEMORY >> 30} GiB"
+    require(needed <= MOST_MEMORY, where, f"{value}: {needed / 2**30:.1f} GiB", expected)

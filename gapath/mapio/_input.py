@@ -5,11 +5,11 @@ from pathlib import Path
 from gapath.errors import InputError, require
 from gapath.grid import MAX_FIELDS, Field
 
-MAX_BYTES = 4 * MAX_FIELDS + (1 << 20)
+MAX_FILE_BYTES = 4 * MAX_FIELDS + (1 << 20)
 """Bytes of the largest map file that is opened: four channels a field, and a header."""
 
 
-def read_bytes(path: str | Path, limit: int = MAX_BYTES) -> bytes:
+def read_bytes(path: str | Path, limit: int = MAX_FILE_BYTES) -> bytes:
     """Read a whole file.
 
     Parameters
@@ -40,7 +40,7 @@ def read_bytes(path: str | Path, limit: int = MAX_BYTES) -> bytes:
         raise InputError(path, error.strerror, "a file that can be read") from error
 
 
-def read_text(path: str | Path, limit: int = MAX_BYTES) -> str:
+def read_text(path: str | Path, limit: int = MAX_FILE_BYTES) -> str:
     r"""Read a whole text file, without byte order mark, each line ended by ``\n``.
 
     Parameters

@@ -26,7 +26,8 @@ ORIGIN = (-4.5, 0.0, 0.0)
 COLS, ROWS = 30, 64
 MAX_ROWS = 1000
 """Rows of the longest map: how far off a goal may lie."""
-MAX_BYTES = 1 << 20
+MAX_WORLD_BYTES = 1 << 20
+"""Bytes of the largest file of a world."""
 TOLERANCE = 1e-3
 """In fields, for numbers that were rounded when written."""
 
@@ -132,7 +133,7 @@ def _read_json(path: str) -> dict[str, Any]:
 
     expected = "a BARN world: a JSON object with cylinders_xyr, start and goal"
     try:
-        world = json.loads(read_text(path, MAX_BYTES), parse_constant=refuse)
+        world = json.loads(read_text(path, MAX_WORLD_BYTES), parse_constant=refuse)
     except InputError:
         raise
     except (ValueError, RecursionError) as error:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.errors import InputError, require
+from gapath.errors import Checks, InputError
 from gapath.grid import Field, GridMap
 from gapath.kernels.lines import ONE_OBSTACLE, line_key
 from gapath.kernels.units import ALLOW, OBSTACLE
@@ -173,9 +173,7 @@ class Reader:
     height: int
 
     def __post_init__(self) -> None:
-        def check(name: str, good: bool, expected: str) -> None:
-            require(good, f"map.{name}", getattr(self, name), expected)
-
+        check = Checks(self, "map")
         check("number", 1 <= self.number < 2**32, "an integer from 1 on")
         check("obstacles", 1 <= self.obstacles <= 1000, "an integer from 1 to 1000")
         for name in ("width", "height"):

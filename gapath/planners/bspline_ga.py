@@ -14,7 +14,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.errors import require
+from gapath.errors import Checks, require, require_memory
 from gapath.kernels.history import fitness_history
 from gapath.kernels.kg18.bspline import Basis, basis, rasterise, way_points
 from gapath.kernels.kg18.evolution import (
@@ -30,8 +30,6 @@ from gapath.kernels.lines import KEY_BITS, ONE_OBSTACLE
 from gapath.kernels.rng import Stream, probability_threshold
 from gapath.kernels.units import SCALE
 from gapath.problem import Evolution, Plan, PlanStatus, Query, no_path
-
-MAX_BYTES = 1 << 30
 
 Arguments: TypeAlias = tuple[
     NDArray[np.int32],
@@ -98,9 +96,7 @@ class Planner:
     exact = False
 
     def __post_init__(self) -> None:
-        def check(name: str, good: bool, expected: str) -> None:
-            require(good, f"planner.{name}", getattr(self, name), expected)
-
+        check = Checks(self, "planner")
         check("population", 4 <= self.population <= 10**6, "an integer from 4 to 1000000")
         check("control_points", 3 <= self.control_points <= 32, "an integer from 3 to 32")
         check("max_epochs", 1 <= self.max_epochs <= 10**6, "an integer from 1 to 1000000")
@@ -119,11 +115,10 @@ class Planner:
         genes, points = 2 * self.control_points, len(self.basis.rounding)
         needed = 4 * genes * (2 * self.population + self.max_epochs)
         needed += 8 * (genes * self.population + (5 + points) * self.max_epochs)
-        require(
-            needed <= MAX_BYTES,
+        require_memory(
+            needed,
             "planner.population, planner.max_epochs",
-            f"{self.population}, {self.max_epochs}: {needed / 2**30:.1f} GiB",
-            "settings that need at most 1 GiB",
+            f"{self.population}, {self.max_epochs}",
         )
         object.__setattr__(self, "evolve", KERNELS[self.kernels[0]])
 

@@ -11,7 +11,7 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.errors import require
+from gapath.errors import Checks, require, require_memory
 from gapath.kernels.history import fitness_history
 from gapath.kernels.lines import KEY_BITS, ONE_OBSTACLE
 from gapath.kernels.raster import polyline
@@ -21,8 +21,6 @@ from gapath.kernels.s04.genotype import MAX_SIDE
 from gapath.kernels.units import SCALE
 from gapath.problem import Evolution, Plan, PlanStatus, Query, no_path
 from gapath.survey.row_column import Frame
-
-MAX_BYTES = 1 << 30
 
 
 @dataclass(frozen=True)
@@ -68,9 +66,7 @@ class Planner:
     exact = False
 
     def __post_init__(self) -> None:
-        def check(name: str, good: bool, expected: str) -> None:
-            require(good, f"planner.{name}", getattr(self, name), expected)
-
+        check = Checks(self, "planner")
         check("switches", 0 <= self.switches <= 2, "an integer from 0 to 2")
         check(
             "switches", not self.switches or self.column_wise, "0, as planner.column_wise is false"
@@ -119,11 +115,10 @@ class Planner:
         require(n <= MAX_SIDE, "map", f"{n} fields a side", f"at most {MAX_SIDE} for this planner")
         needed = 4 * (2 * n + 2) * (2 * self.population + self.max_epochs)
         needed += 8 * (n + 3) * self.population + 8 * (2 * n + 5) * self.max_epochs
-        require(
-            needed <= MAX_BYTES,
+        require_memory(
+            needed,
             "planner.population, planner.max_epochs",
-            f"{self.population}, {self.max_epochs}: {needed / 2**30:.1f} GiB",
-            "settings that need at most 1 GiB",
+            f"{self.population}, {self.max_epochs}",
         )
 
     def plan(self, problem: Query, stream: Stream) -> Plan:

@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.errors import InputError, require
+from gapath.errors import Checks, InputError, require_memory
 from gapath.kernels.m22.evolution import SETTINGS, EvolutionResult, path_length, run_evolution
 from gapath.kernels.m22.graph import END, START
 from gapath.kernels.rng import Stream, probability_threshold
@@ -21,8 +21,6 @@ from gapath.problem import Evolution, Plan, PlanStatus, Query
 from gapath.survey.visibility_graph import Surveyor, VisibilityGraph
 
 PROFILES = ("v64", "v67", "v69")
-
-MAX_BYTES = 1 << 30
 
 
 @dataclass(frozen=True)
@@ -70,10 +68,7 @@ class Planner(Surveyor):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-
-        def check(name: str, good: bool, expected: str) -> None:
-            require(good, f"planner.{name}", getattr(self, name), expected)
-
+        check = Checks(self, "planner")
         check("ga2_profile", self.ga2_profile in PROFILES, f"one of {', '.join(PROFILES)}")
         if isinstance(self.genes, str):
             good = self.genes in ("obstacles", "obstacles_and_ends")
@@ -154,12 +149,7 @@ class Planner(Surveyor):
         if isinstance(genes, str):
             genes = max(1, obstacle_count) + (2 if self._ends_are_genes else 0)
         needed = 4 * genes * (2 * self.population + 5 * self.max_epochs) + 32 * self.max_epochs
-        require(
-            needed <= MAX_BYTES,
-            "planner.max_epochs",
-            f"{self.max_epochs} with {genes} genes: {needed / 2**30:.1f} GiB",
-            "settings that need at most 1 GiB",
-        )
+        require_memory(needed, "planner.max_epochs", f"{self.max_epochs} with {genes} genes")
         return genes
 
     def check(self, problem: Query) -> None:

@@ -11,7 +11,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.errors import InputError, require
+from gapath.errors import Checks, InputError, require
 from gapath.grid import nearest_free
 from gapath.kernels.units import OBSTACLE, SCALE
 from gapath.problem import Query
@@ -50,9 +50,7 @@ class Clearance:
     threshold: str | float | int
 
     def __post_init__(self) -> None:
-        def check(name: str, good: bool, expected: str) -> None:
-            require(good, f"planner.{name}", getattr(self, name), expected)
-
+        check = Checks(self, "planner")
         check("robot_radius", 0 <= self.robot_radius < math.inf, "a number from 0 on")
         check("radius_unit", self.radius_unit in ("pixels", "metres"), '"pixels" or "metres"')
         check("radius_tolerance", 0 <= self.radius_tolerance <= 10, "a number from 0 to 10")
