@@ -14,24 +14,27 @@ from tabulate import tabulate
 from benchmarks.measure import Quartiles, Row, machine
 from benchmarks.targets import TARGETS, judge
 
-QUESTIONS = (
-    "fitness",
-    "ga_run",
-    "tricks",
-    "epochs",
-    "row_column",
-    "visibility",
-    "visibility_growth",
-    "visibility_agreement",
+_PLACES = (
+    "kg18.fitness",
+    "kg18.ga_run",
+    "kg18.tricks",
+    "kg18.epochs",
+    "s04.row_column",
+    "m22.visibility",
+    "m22.visibility_growth",
+    "m22.visibility_agreement",
     "exact",
-    "growth",
-    "growth_settings",
-    "threads",
-    "sweep",
-    "logging",
-    "drives",
+    "kg18.growth",
+    "kg18.growth_settings",
+    "kg18.threads",
+    "kg18.sweep",
+    "kg18.logging",
+    "kg18.drives",
     "cold_start",
 )
+
+QUESTIONS = {place.rpartition(".")[2]: place for place in _PLACES}
+"""Names of the questions, in order, and their modules in `benchmarks.questions`."""
 
 INDEX = "questions.csv"
 """The questions of the last run, written when all have been answered."""
@@ -41,7 +44,7 @@ TARGET_COLUMNS = ("what", "target", "measured", "met")
 
 def question(name: str) -> ModuleType:
     """Import a question."""
-    return import_module(f"benchmarks.questions.{name}")
+    return import_module(f"benchmarks.questions.{QUESTIONS[name]}")
 
 
 def columns(rows: list[Row]) -> list[str]:

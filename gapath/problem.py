@@ -227,14 +227,9 @@ class Plan(Answer):
         return self.trace() if self.trace else None
 
     def _repr_html_(self) -> str:
-        rows = {
-            "status": f"{self.status.name.lower()}: {self.status.sentence}",
-            "cost": f"{self.cost:g}",
-            "fields": len(self.path),
-            "epochs": self.epochs,
-            "evaluations": self.evaluations,
-            "expansions": self.expansions,
-        }
+        rows: dict[str, object] = {"status": f"{self.status.name.lower()}: {self.status.sentence}"}
+        rows |= {"cost": f"{self.cost:g}", "fields": len(self.path)}
+        rows |= {name: getattr(self, name) for name in ("epochs", "evaluations", "expansions")}
         cells = "".join(
             f"<tr><th>{key}</th><td>{html.escape(str(value))}</td></tr>"
             for key, value in rows.items()
@@ -342,7 +337,7 @@ class Accelerated(Protocol):
         Returns
         -------
         Planner
-            It has the same settings, so a run's key does not tell one from the other.
+            A copy with the same settings.
 
         Raises
         ------

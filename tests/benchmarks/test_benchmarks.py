@@ -14,18 +14,10 @@ from strategies import planner, problems
 
 from benchmarks import __main__
 from benchmarks.measure import MAPS, SETTINGS, interleave, make_planner, make_problem, quartiles
-from benchmarks.questions import (
-    drives,
-    exact,
-    ga_run,
-    logging,
-    row_column,
-    sweep,
-    threads,
-    visibility,
-    visibility_agreement,
-    visibility_growth,
-)
+from benchmarks.questions import exact
+from benchmarks.questions.kg18 import drives, ga_run, logging, sweep, threads
+from benchmarks.questions.m22 import visibility, visibility_agreement, visibility_growth
+from benchmarks.questions.s04 import row_column
 from benchmarks.rivals import textbook, visibility_library
 from gapath.kernels.rng import stream
 from gapath.problem import CornerCutting, Problem

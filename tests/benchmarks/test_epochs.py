@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks.measure import Quartiles, make_planner, make_problem
-from benchmarks.questions import epochs
+from benchmarks.questions.kg18 import epochs
 from benchmarks.rivals import visibility_library
 
 ABSENT = "skipped: the bench extra is not installed"

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from benchmarks.questions import fitness
+from benchmarks.questions.kg18 import fitness
 from gapath.kernels.jit import JIT
 from gapath.kernels.units import OBSTACLE
 

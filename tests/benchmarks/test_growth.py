@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks.measure import MAPS, SETTINGS, make_planner, make_problem
-from benchmarks.questions import growth, growth_settings
+from benchmarks.questions.kg18 import growth, growth_settings
 from gapath.kernels.rng import stream
 from gapath.planning.shortest_path import shortest_path
 from gapath.problem import Problem

@@ -7,7 +7,7 @@ import pytest
 
 from benchmarks import __main__
 from benchmarks.measure import Quartiles
-from benchmarks.questions import drives, growth_settings
+from benchmarks.questions.kg18 import drives, growth_settings
 from benchmarks.targets import TARGETS, Target, column, epochs_of, judge
 
 FEWER = Target("fewer", "exact", "<=", 2.0, column("us", map="a"), "us")

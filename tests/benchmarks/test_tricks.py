@@ -2,7 +2,7 @@
 
 import pytest
 
-from benchmarks.questions import tricks
+from benchmarks.questions.kg18 import tricks
 
 
 def test_every_trick_is_timed_with_and_without():

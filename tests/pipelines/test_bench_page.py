@@ -7,7 +7,9 @@ import pytest
 
 from benchmarks import __main__
 from benchmarks.measure import MAPS, SETTINGS, Quartiles
-from benchmarks.questions import drives, exact, growth, growth_settings, visibility
+from benchmarks.questions import exact
+from benchmarks.questions.kg18 import drives, growth, growth_settings
+from benchmarks.questions.m22 import visibility
 from gapath.pipelines.bench import figure_map_size as bench_figure_map_size
 from gapath.pipelines.bench import figure_settings as bench_figure_settings
 from gapath.pipelines.report.bench import make_bench_page

@@ -11,7 +11,7 @@ leaves the elite out or that a mutation between parents may reach the greater on
 import numpy as np
 import pytest
 
-from benchmarks.questions.visibility_agreement import (
+from benchmarks.questions.m22.visibility_agreement import (
     MEASURES,
     PROFILES,
     agreement,

@@ -24,7 +24,7 @@ from gapath.grid import GridMap
 from gapath.kernels.rng import stream
 from gapath.problem import Plan, Problem
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "twins"))  # the twin
+sys.path.insert(0, str(Path(__file__).parents[3] / "tests" / "twins"))  # the twin
 
 import naive
 import naive_row_column

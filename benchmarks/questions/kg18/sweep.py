@@ -10,15 +10,15 @@ import tempfile
 import time
 from dataclasses import replace
 
-import yaml
-
 from benchmarks.measure import MAPS, SETTINGS, Row, make_planner, make_problem
 from gapath.discovery import yaml_values
 from gapath.problem import Problem
 from gapath.recorders import mcap
 from gapath.runs.config import Run
 from gapath.runs.experiment import execute
-from gapath.tasks.plan import PlanTask
+from gapath.runs.naming import Method
+from gapath.store.settings import flatten
+from gapath.tasks.plan import Task as PlanTask
 
 
 def _execute(run: Run, recorders: list[mcap.Recorder]) -> tuple[float, float]:
@@ -31,11 +31,10 @@ def _execute(run: Run, recorders: list[mcap.Recorder]) -> tuple[float, float]:
 
 
 def _run(problem: Problem, name: str, trials: int, threads: int) -> Run:
-    settings = yaml.safe_dump(
-        {"task": "plan", "planner": yaml_values("planner", name), "trials": trials}
-    )
+    values = yaml_values("planner", name)
+    settings = flatten({"task": PlanTask.name, "planner": values, "trials": trials})
     task = PlanTask(make_planner(name))
-    return Run("sweep", name, problem, task, [], 0, trials, settings, "", False, threads)
+    return Run("sweep", Method(name), problem, task, [], 0, trials, settings, "", False, threads)
 
 
 def measure(quick: bool) -> list[Row]:

@@ -23,7 +23,7 @@ from gapath.kernels.m22.evolution import run_evolution
 from gapath.kernels.rng import stream
 from gapath.kernels.units import SCALE
 
-REFERENCE = Path(__file__).parents[2] / "tests" / "reference"
+REFERENCE = Path(__file__).parents[3] / "tests" / "reference"
 PROFILES = {"v64": "6.4.1", "v67": "6.7.7", "v69": "6.9.2"}
 MEASURES = ("f", "generations", "evaluations")
 

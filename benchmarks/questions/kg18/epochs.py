@@ -63,8 +63,7 @@ def run_gapath(problem: Problem, planner: Planner, seed: int) -> Callable[[], Ou
 
     def outcome() -> Outcome:
         assert plan.evolution is not None
-        obstacles, cost = divmod(plan.cost, planner.vln)
-        value = obstacles * ONE_OBSTACLE + cost * SCALE
+        value = plan.obstacles * ONE_OBSTACLE + plan.weights * SCALE
         return Outcome(plan.evolution.chromosomes[-1][2:-2], value, plan.evaluations)
 
     return outcome

@@ -22,7 +22,7 @@ from typing import Any
 import yaml
 
 from benchmarks.measure import Calls, Row, interleave, make_problem, quartiles, timed
-from gapath.components import build
+from gapath.components import build, expanded
 from gapath.discovery import yaml_values
 from gapath.driving.drive import Drive, Sensor, drive
 from gapath.driving.navigation import Situation
@@ -31,9 +31,11 @@ from gapath.events import Outcome
 from gapath.kernels.rng import Stream
 from gapath.problem import Plan, Planner, Problem
 from gapath.recorders import rerun
-from gapath.runs.config import Run, conf_folder, make_task
+from gapath.runs.config import Run, conf_folder
 from gapath.runs.experiment import execute, run_started
-from gapath.tasks.drive import DriveTask
+from gapath.runs.naming import Method
+from gapath.store.settings import flatten
+from gapath.tasks.drive import Task as DriveTask
 
 MAPS = ("kg18_map1", "kg18_map2", "kg18_map3", "kg18_map4")
 NAVIGATORS = ("kg18", "kg18_fast", "kg18_astar", "replan_astar", "dstar_lite", "straight_astar")
@@ -60,9 +62,10 @@ def make_drive_run(map_name: str, navigator: str, trials: int) -> Run:
     """Make a run without recorders, the drive's settings as in ``conf/config.yaml``."""
     plain = yaml.safe_load(Path(conf_folder(), "config.yaml").read_text("utf-8"))
     values = yaml_values("navigator", navigator)
-    settings = {"task": "drive", "drive": plain["drive"], "navigator": values}
-    task, text = make_task(settings), yaml.safe_dump(settings)
-    return Run("drives", navigator, make_problem(map_name), task, [], 0, trials, text, "", False)
+    given = {group: plain.get(group, values) for group in DriveTask.groups}
+    settings = flatten({"task": DriveTask.name, **expanded(given)})
+    method, task = Method(navigator), DriveTask.make(given)
+    return Run("drives", method, make_problem(map_name), task, [], 0, trials, settings, "", False)
 
 
 def drive_once(task: DriveTask, problem: Problem, trial: int) -> Drive:

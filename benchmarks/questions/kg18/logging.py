@@ -20,7 +20,9 @@ from gapath.planning.simulation import TimedPlan
 from gapath.recorders import mcap
 from gapath.runs.config import Run
 from gapath.runs.experiment import run_started
-from gapath.tasks.plan import PlanTask, trial_events
+from gapath.runs.naming import Method
+from gapath.tasks.plan import Task as PlanTask
+from gapath.tasks.plan import trial_events
 
 KINDS = (
     ("kg18_test1", 1, 1),
@@ -46,7 +48,9 @@ class Batch:
             if least <= plan.epochs <= most:
                 self.trials.append(TimedPlan(number, plan, 0.0))
             number += 1
-        run = Run("logging", "ga1", problem, PlanTask(planner), [], 0, BATCH, "", folder, False)
+        run = Run(
+            "logging", Method("ga1"), problem, PlanTask(planner), [], 0, BATCH, {}, folder, False
+        )
         self.recorder = mcap.Recorder(flush_every=400)
         self.recorder.open(folder)
         self.recorder.record(run_started(run, shortest_path(problem)))

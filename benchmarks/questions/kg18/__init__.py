@@ -1,0 +1,1 @@
+"""Questions about KG18's planner and its drives."""

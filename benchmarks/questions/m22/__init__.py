@@ -1,0 +1,1 @@
+"""Questions about M22's planner."""

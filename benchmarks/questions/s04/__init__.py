@@ -1,0 +1,1 @@
+"""Questions about S04's planner."""
