@@ -46,7 +46,7 @@ Evolve: TypeAlias = Callable[[Planner, Objective, int], tuple[Sequence[float], f
 """Runs `planner.max_epochs` populations with a seed; gives the best genes and their value."""
 
 
-class Outcome(NamedTuple):
+class BestFound(NamedTuple):
     """What a run came to."""
 
     genes: Sequence[float]
@@ -54,28 +54,28 @@ class Outcome(NamedTuple):
     evaluations: int
 
 
-Run: TypeAlias = Callable[[Problem, Planner, int], Callable[[], Outcome]]
+Contender: TypeAlias = Callable[[Problem, Planner, int], Callable[[], BestFound]]
 """Runs with a seed, which is timed; the outcome is read later."""
 
 
-def run_gapath(problem: Problem, planner: Planner, seed: int) -> Callable[[], Outcome]:
+def run_gapath(problem: Problem, planner: Planner, seed: int) -> Callable[[], BestFound]:
     plan = planner.plan(problem, stream(seed))
 
-    def outcome() -> Outcome:
+    def outcome() -> BestFound:
         assert plan.evolution is not None
         obstacles, cost = divmod(plan.cost, planner.vln)
         value = obstacles * ONE_OBSTACLE + cost * SCALE
-        return Outcome(plan.evolution.chromosomes[-1][2:-2], value, plan.evaluations)
+        return BestFound(plan.evolution.chromosomes[-1][2:-2], value, plan.evaluations)
 
     return outcome
 
 
 def run_library(
     evolve: Evolve, problem: Problem, planner: Planner, seed: int
-) -> Callable[[], Outcome]:
+) -> Callable[[], BestFound]:
     objective = Objective(problem, planner)
     genes, value = evolve(planner, objective, seed)
-    return lambda: Outcome(genes, value, objective.calls)
+    return lambda: BestFound(genes, value, objective.calls)
 
 
 def why_not(library: str) -> str | None:
@@ -85,12 +85,12 @@ def why_not(library: str) -> str | None:
     return None if find_spec(library) else "skipped: the bench extra is not installed"
 
 
-def library_run(library: str) -> Run:
+def library_run(library: str) -> Contender:
     """Import a library."""
     return partial(run_library, import_module(f"benchmarks.rivals.epochs_{library}").evolve)
 
 
-def check_alike(name: str, outcome: Outcome, objective: Objective, expected: int) -> None:
+def check_alike(name: str, outcome: BestFound, objective: Objective, expected: int) -> None:
     """Raise RuntimeError unless a run did the work and its best is worth what it says."""
     if abs(outcome.evaluations - expected) > TOLERANCE * expected:
         raise RuntimeError(f"{name} evaluates {outcome.evaluations} chromosomes, not {expected}")
@@ -100,8 +100,8 @@ def check_alike(name: str, outcome: Outcome, objective: Objective, expected: int
 
 
 def time_epoch(
-    run: Run, problem: Problem, short: Planner, long: Planner, seed: int
-) -> tuple[float, Callable[[], Outcome]]:
+    run: Contender, problem: Problem, short: Planner, long: Planner, seed: int
+) -> tuple[float, Callable[[], BestFound]]:
     """Give the microseconds of one epoch more, and the long run's outcome."""
     run(problem, short, seed)  # its own data in the caches, not the last rival's
     less, _ = timed(partial(run, problem, short, seed))
@@ -117,7 +117,7 @@ def measure(quick: bool) -> list[Row]:
 def _compare(name: str, epochs: tuple[int, int], rounds: int) -> list[Row]:
     problem = make_problem(MAP)
     short, long = (make_planner(name, max_epochs=number) for number in epochs)
-    runs: dict[str, Run] = {"gapath": run_gapath}
+    runs: dict[str, Contender] = {"gapath": run_gapath}
     runs |= {library: library_run(library) for library in LIBRARIES if not why_not(library)}
     _, results = interleave(
         [
