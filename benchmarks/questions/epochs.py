@@ -23,7 +23,15 @@ from importlib import import_module, metadata
 from importlib.util import find_spec
 from typing import NamedTuple, TypeAlias
 
-from benchmarks.measure import Row, interleave, make_planner, make_problem, quartiles, ratios, timed
+from benchmarks.measure import (
+    Row,
+    interleave,
+    make_bspline_ga,
+    make_problem,
+    quartiles,
+    ratios,
+    timed,
+)
 from benchmarks.rivals import visibility_library
 from benchmarks.rivals.objective import Objective
 from gapath.kernels.lines import ONE_OBSTACLE
@@ -116,7 +124,7 @@ def measure(quick: bool) -> list[Row]:
 
 def _compare(name: str, epochs: tuple[int, int], rounds: int) -> list[Row]:
     problem = make_problem(MAP)
-    short, long = (make_planner(name, max_epochs=number) for number in epochs)
+    short, long = (make_bspline_ga(name, max_epochs=number) for number in epochs)
     runs: dict[str, Contender] = {"gapath": run_gapath}
     runs |= {library: library_run(library) for library in LIBRARIES if not why_not(library)}
     _, results = interleave(
