@@ -81,7 +81,7 @@ def table(rows: list[Row]) -> str:
     """Write a table as Markdown."""
     names = columns(rows)
     cells = [[cell(row.get(name)) for name in names] for row in rows]
-    return tabulate(cells, names, tablefmt="github", disable_numparse=True)
+    return str(tabulate(cells, names, tablefmt="github", disable_numparse=True))
 
 
 def ask(names: list[str], quick: bool, folder: Path) -> dict[str, list[Row]]:

@@ -10,6 +10,9 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
+import numpy as np
+from numpy.typing import NDArray
+
 import gapath
 from gapath.components import build
 from gapath.discovery import yaml_values
@@ -90,6 +93,11 @@ def make_problem(map_name: str) -> Problem:
     grid = gapath.load_map(map_name)
     assert grid.start is not None and grid.target is not None
     return Problem(grid, grid.start, grid.target)
+
+
+def repeat_fields(weights: NDArray[np.float64], across: int, down: int) -> NDArray[np.float64]:
+    """Make each field of a map a block of so many columns and rows."""
+    return weights.repeat(down, axis=0).repeat(across, axis=1)
 
 
 def make_planner(name: str, **settings: Any) -> Planner:

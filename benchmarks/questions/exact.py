@@ -26,7 +26,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 from skimage.graph import MCP
 
-from benchmarks.measure import MAPS, Row, interleave, make_problem, quartiles, ratios, timed
+from benchmarks.measure import MAPS, Calls, Row, interleave, make_problem, quartiles, ratios, timed
 from gapath.grid import GridMap
 from gapath.planning.shortest_path import shortest_path
 from gapath.problem import Problem
@@ -261,7 +261,7 @@ def _compare(problem: Problem, quick: bool) -> list[Row]:
     skipped = {name: why_not(peer, problem) for name, peer in PEERS.items()}
     rows: dict[str, Row] = {}
     for rounds in sorted({peer.rounds for peer in PEERS.values()}):  # ours ends with the most
-        calls = {
+        calls: Calls = {
             name: partial(once, peer, problem)
             for name, peer in PEERS.items()
             if name == OURS or (peer.rounds == rounds and not skipped[name])
@@ -274,7 +274,7 @@ def _compare(problem: Problem, quick: bool) -> list[Row]:
     ]
 
 
-def _time(problem: Problem, calls: dict[str, Callable[[], Any]], rounds: int) -> dict[str, Row]:
+def _time(problem: Problem, calls: Calls, rounds: int) -> dict[str, Row]:
     _, results = interleave([calls] * rounds)
     optimum, rows = shortest_path(problem).cost, {}
     for name in calls:

@@ -22,7 +22,7 @@ from gapath.kernels.s04.genotype import (
 )
 from gapath.planners.row_column_ga import Planner
 from gapath.problem import Problem
-from gapath.survey.row_column import Frame
+from gapath.survey.row_column import SquareView
 
 creator.create("Fitness", base.Fitness, weights=(1.0,))
 creator.create("Individual", list, fitness=creator.Fitness, flag=int, switch=list)
@@ -62,10 +62,10 @@ class Rating:
     """Gives every individual of a population its fitness."""
 
     def __init__(self, problem: Problem, planner: Planner) -> None:
-        self.frame = Frame.of(problem)
+        self.view = SquareView.of(problem)
         self.weights = planner.length_weight, planner.turns_weight
-        self.sums = empty_sums(self.frame.side)
-        running_sums(self.frame.table, *self.frame.flips, self.sums)
+        self.sums = empty_sums(self.view.side)
+        running_sums(self.view.table, *self.view.flips, self.sums)
         self.measures = empty_measures(planner.population)
         self.walk = empty_walk(planner.population)
         self.values = np.empty(planner.population)
@@ -73,7 +73,7 @@ class Rating:
     def __call__(self, population: list[Any]) -> None:
         """Rate individuals against one another."""
         chromosomes = as_chromosomes(population)
-        measure(chromosomes, self.frame.ends, self.sums, self.measures, self.walk)
+        measure(chromosomes, self.view.ends, self.sums, self.measures, self.walk)
         fitness(self.measures, *self.weights, self.values)
         for individual, value in zip(population, self.values.tolist(), strict=True):
             individual.fitness.values = (value,)

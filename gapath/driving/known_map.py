@@ -1,5 +1,6 @@
 """What the robot knows: unknown fields count as free (KG18 Sec. 3.12)."""
 
+import copy
 from typing import NamedTuple
 
 import numpy as np
@@ -158,15 +159,14 @@ class KnownMap:
 
     def dearer(self, places: tuple[Field, ...], penalty: float) -> "KnownMap":
         """Give a copy on which some fields cost more."""
-        copy = object.__new__(KnownMap)
-        copy.__dict__.update(self.__dict__)
-        copy._table = self.table.copy()
+        dearer = copy.copy(self)
+        dearer._table = self.table.copy()
         rows, cols = [y for _, y in places], [x for x, _ in places]
         before = self.table[rows, cols].astype(np.int64)
         after = np.minimum(before + int(penalty * SCALE), OBSTACLE - 1)
-        copy._table[rows, cols] = np.where(before >= OBSTACLE, OBSTACLE, after)
-        copy.table = _read_only(copy._table)
-        return copy
+        dearer._table[rows, cols] = np.where(before >= OBSTACLE, OBSTACLE, after)
+        dearer.table = _read_only(dearer._table)
+        return dearer
 
 
 def _read_only(table: Table) -> Table:

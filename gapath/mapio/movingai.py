@@ -88,26 +88,6 @@ def _scenario_problem(where: str, line: str) -> ScenarioProblem:
     return ScenarioProblem(bucket, columns[1], cols, rows, (x, y), (goal_x, goal_y), length)
 
 
-def write_map(grid: GridMap) -> str:
-    r"""Write a map as MovingAI text.
-
-    Parameters
-    ----------
-    grid : GridMap
-        The map. The format says only which fields can be passed: weights below 1, start
-        and target are not kept.
-
-    Returns
-    -------
-    str
-        The text, ``@`` for obstacles and ``.`` elsewhere, each line ended by ``\n``.
-    """
-    header = f"type octile\nheight {grid.rows}\nwidth {grid.cols}\nmap\n"
-    return header + "".join(
-        "".join("@" if blocked else "." for blocked in row) + "\n" for row in grid.obstacles
-    )
-
-
 @dataclass(frozen=True)
 class Reader:
     """Reads a ``.map`` file, with start and target from a ``.scen`` file if one is named.

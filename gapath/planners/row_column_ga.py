@@ -20,7 +20,7 @@ from gapath.kernels.s04.evolution import SETTINGS, EvolutionResult, run_evolutio
 from gapath.kernels.s04.genotype import MAX_SIDE
 from gapath.kernels.units import SCALE
 from gapath.problem import Evolution, Plan, PlanStatus, Query, no_path
-from gapath.survey.row_column import Frame
+from gapath.survey.row_column import SquareView
 
 
 @dataclass(frozen=True)
@@ -137,28 +137,28 @@ class Planner:
             FOUND with the fittest path, or NOT_FOUND with its cost.
         """
         grid = problem.map
-        frame = Frame.of(problem)
+        view = SquareView.of(problem)
         settings = self.kernel_settings
-        result = run_evolution(grid.table, frame.ends, frame.flips, settings, stream)
+        result = run_evolution(grid.table, view.ends, view.flips, settings, stream)
         key = int(result.epochs["key"][-1])
         found = key < ONE_OBSTACLE
         return Plan(
             PlanStatus.FOUND if found else PlanStatus.NOT_FOUND,
-            path=polyline(frame.paths(result.chromosomes[-1:])[0]) if found else no_path(),
+            path=polyline(view.paths(result.chromosomes[-1:])[0]) if found else no_path(),
             weights=(key & (ONE_OBSTACLE - 1)) / SCALE,
             obstacles=key >> KEY_BITS,
             vln=self.vln,
             epochs=len(result.epochs),
             evaluations=self.population * len(result.epochs),
-            trace=partial(self._evolution, result, frame),
+            trace=partial(self._evolution, result, view),
         )
 
-    def _evolution(self, result: EvolutionResult, frame: Frame) -> Evolution:
+    def _evolution(self, result: EvolutionResult, view: SquareView) -> Evolution:
         best, mean = fitness_history(result.epochs, self.population, self.vln, SCALE)
         return Evolution(
             best=best,
             mean=mean,
             chromosomes=result.chromosomes,
-            way_points=frame.paths(result.chromosomes),
+            way_points=view.paths(result.chromosomes),
             genotype="row_column",
         )

@@ -12,7 +12,7 @@ from gapath.kernels.s04.reach import UNREACHED, reach
 from gapath.problem import Query
 
 
-class Frame(NamedTuple):
+class SquareView(NamedTuple):
     """How a problem looks to S04's kernels: the start at the upper left of the target.
 
     The map is mirrored, if need be, and counts as padded to a square at its end.
@@ -26,8 +26,8 @@ class Frame(NamedTuple):
     """Whether x and y are mirrored."""
 
     @classmethod
-    def of(cls, problem: Query) -> "Frame":
-        """Make the frame of a problem."""
+    def of(cls, problem: Query) -> "SquareView":
+        """Look at a problem."""
         grid, (x, y), (u, v) = problem.map, problem.start, problem.target
         flips = u < x, v < y
         if flips[0]:
@@ -93,6 +93,8 @@ def classify(problem: Query) -> Class:
 def express(problem: Query, genotype: Genotype) -> NDArray[np.int32] | None:
     """Find a chromosome whose path is free, or prove that there is none.
 
+    The witness of what `classify` says, for people and tests: gapath itself needs only that.
+
     Parameters
     ----------
     problem : Query
@@ -128,10 +130,10 @@ def express(problem: Query, genotype: Genotype) -> NDArray[np.int32] | None:
 
 def _origins(problem: Query, genotype: Genotype) -> NDArray[np.int32]:
     """Run the dynamic programming (`gapath.kernels.s04.reach.reach`)."""
-    frame = Frame.of(problem)
-    n = frame.side
+    view = SquareView.of(problem)
+    n = view.side
     sums = empty_sums(n)
-    running_sums(frame.table, *frame.flips, sums)
+    running_sums(view.table, *view.flips, sums)
     origins = np.empty((n, genotype.switches + 1, 2, n), dtype=np.int32)
-    reach(sums, frame.ends, genotype, origins)
+    reach(sums, view.ends, genotype, origins)
     return origins

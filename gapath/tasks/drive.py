@@ -4,7 +4,7 @@ import statistics
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -102,12 +102,20 @@ class Task:
     unknown_weight: float
     before: GridMap | None
 
-    name = "drive"
-    groups = ("navigator", "drive")
-    row = DriveRow
-    success = "reached"
-    threaded = False  # a drive's steps are Python: drives on threads would wait for one another
-    events = (TrialStarted, Called, PathsChanged, Stepped, DriveFinished)
+    name: ClassVar[str] = "drive"
+    groups: ClassVar[tuple[str, ...]] = ("navigator", "drive")
+    row: ClassVar[type[Any]] = DriveRow
+    success: ClassVar[str] = "reached"
+    threaded: ClassVar[bool] = (
+        False  # a drive's steps are Python: drives on threads would wait for one another
+    )
+    events: ClassVar[tuple[type[Any], ...]] = (
+        TrialStarted,
+        Called,
+        PathsChanged,
+        Stepped,
+        DriveFinished,
+    )
 
     @classmethod
     def make(cls, settings: Mapping[str, Any]) -> Self:

@@ -6,7 +6,7 @@ import statistics
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, Self, cast
+from typing import Any, ClassVar, Self, cast
 
 from gapath.components import build
 from gapath.errors import require
@@ -52,12 +52,12 @@ class Task:
 
     planner: Planner
 
-    name = "plan"
-    groups = ("planner",)
-    row = PlanRow
-    success = "feasible"
-    threaded = True
-    events = (TrialStarted, Surveyed, Evolved, TrialFinished)
+    name: ClassVar[str] = "plan"
+    groups: ClassVar[tuple[str, ...]] = ("planner",)
+    row: ClassVar[type[Any]] = PlanRow
+    success: ClassVar[str] = "feasible"
+    threaded: ClassVar[bool] = True
+    events: ClassVar[tuple[type[Any], ...]] = (TrialStarted, Surveyed, Evolved, TrialFinished)
 
     @classmethod
     def make(cls, settings: Mapping[str, Any]) -> Self:

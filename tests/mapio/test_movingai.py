@@ -10,7 +10,7 @@ from hypothesis.extra.numpy import array_shapes, arrays
 
 from gapath.errors import InputError
 from gapath.grid import GridMap
-from gapath.mapio.movingai import Reader, read_scenario, write_map
+from gapath.mapio.movingai import Reader, read_scenario
 
 DATA = Path(os.environ.get("GAPATH_DATA", Path(__file__).parents[3] / "shared" / "data"))
 READER = Reader("", start=None, target=None, scenario=None, problem=0, free_weight=0.5)
@@ -133,13 +133,20 @@ def test_bad_scenario(tmp_path, text, message):
     assert str(caught.value).startswith(scenario) and message in str(caught.value)
 
 
+def write_map(obstacles):
+    rows = ["".join(".@"[blocked] for blocked in row) for row in obstacles.astype(int)]
+    return "\n".join(
+        ["type octile", f"height {len(rows)}", f"width {len(rows[0])}", "map", *rows, ""]
+    )
+
+
 @given(
     arrays(np.bool_, array_shapes(min_dims=2, max_dims=2, max_side=12)),
     st.floats(0, 1, exclude_max=True),
 )
 def test_written_map_reads_back(tmp_path_factory, obstacles, free_weight):
     grid = GridMap("m", np.where(obstacles, 1.0, free_weight))
-    path = save(tmp_path_factory.getbasetemp(), "m.map", write_map(grid))
+    path = save(tmp_path_factory.getbasetemp(), "m.map", write_map(obstacles))
     assert replace(READER, path=path, free_weight=free_weight).read().digest == grid.digest
 
 

@@ -68,6 +68,12 @@ def make_drive_run(map_name: str, navigator: str, trials: int) -> Run:
     return Run("drives", method, make_problem(map_name), task, [], 0, trials, settings, "", False)
 
 
+def task_of(run: Run) -> DriveTask:
+    """Give the task of a run that drives."""
+    assert isinstance(run.task, DriveTask)
+    return run.task
+
+
 def drive_once(task: DriveTask, problem: Problem, trial: int) -> Drive:
     """Drive as a trial of seed 0 does."""
     limits = (task.step_limit, task.unknown_weight)
@@ -86,7 +92,7 @@ def drive_clocked(task: DriveTask, problem: Problem, trial: int) -> tuple[Drive,
 def time_drives(map_name: str, trials: int) -> list[Row]:
     """Time every navigator on the same drives, one after the other."""
     problem = make_problem(map_name)
-    tasks: dict[str, Any] = {name: make_drive_run(map_name, name, 1).task for name in NAVIGATORS}
+    tasks = {name: task_of(make_drive_run(map_name, name, 1)) for name in NAVIGATORS}
 
     def rivals(trial: int) -> Calls:
         plain = {name: partial(drive_once, task, problem, trial) for name, task in tasks.items()}
@@ -127,7 +133,7 @@ def time_logs(map_name: str, trials: int) -> Row:
 def time_recording(times: int) -> Row:
     """Time the recording of the first drive of range 1 on map 4 that is long enough."""
     run = make_drive_run(MAPS[-1], "kg18", trials=1)
-    task = replace(run.task, sensor=Sensor(1, False), step_limit=RECORDED_STEPS)
+    task = replace(task_of(run), sensor=Sensor(1, False), step_limit=RECORDED_STEPS)
     drives = map(partial(drive_once, task, run.problem), itertools.count())
     driven = next(d for d in drives if len(d.frames) == RECORDED_STEPS + 1)
     begin = run_started(run, task.optimum(run.problem))

@@ -23,7 +23,15 @@ from importlib import import_module, metadata
 from importlib.util import find_spec
 from typing import NamedTuple, TypeAlias
 
-from benchmarks.measure import Row, interleave, make_planner, make_problem, quartiles, ratios, timed
+from benchmarks.measure import (
+    Row,
+    interleave,
+    make_bspline_ga,
+    make_problem,
+    quartiles,
+    ratios,
+    timed,
+)
 from benchmarks.rivals import visibility_library
 from benchmarks.rivals.objective import Objective
 from gapath.kernels.lines import ONE_OBSTACLE
@@ -46,7 +54,7 @@ Evolve: TypeAlias = Callable[[Planner, Objective, int], tuple[Sequence[float], f
 """Runs `planner.max_epochs` populations with a seed; gives the best genes and their value."""
 
 
-class Outcome(NamedTuple):
+class BestFound(NamedTuple):
     """What a run came to."""
 
     genes: Sequence[float]
@@ -54,27 +62,27 @@ class Outcome(NamedTuple):
     evaluations: int
 
 
-Run: TypeAlias = Callable[[Problem, Planner, int], Callable[[], Outcome]]
+Contender: TypeAlias = Callable[[Problem, Planner, int], Callable[[], BestFound]]
 """Runs with a seed, which is timed; the outcome is read later."""
 
 
-def run_gapath(problem: Problem, planner: Planner, seed: int) -> Callable[[], Outcome]:
+def run_gapath(problem: Problem, planner: Planner, seed: int) -> Callable[[], BestFound]:
     plan = planner.plan(problem, stream(seed))
 
-    def outcome() -> Outcome:
+    def outcome() -> BestFound:
         assert plan.evolution is not None
         value = plan.obstacles * ONE_OBSTACLE + plan.weights * SCALE
-        return Outcome(plan.evolution.chromosomes[-1][2:-2], value, plan.evaluations)
+        return BestFound(plan.evolution.chromosomes[-1][2:-2], value, plan.evaluations)
 
     return outcome
 
 
 def run_library(
     evolve: Evolve, problem: Problem, planner: Planner, seed: int
-) -> Callable[[], Outcome]:
+) -> Callable[[], BestFound]:
     objective = Objective(problem, planner)
     genes, value = evolve(planner, objective, seed)
-    return lambda: Outcome(genes, value, objective.calls)
+    return lambda: BestFound(genes, value, objective.calls)
 
 
 def why_not(library: str) -> str | None:
@@ -84,12 +92,12 @@ def why_not(library: str) -> str | None:
     return None if find_spec(library) else "skipped: the bench extra is not installed"
 
 
-def library_run(library: str) -> Run:
+def library_run(library: str) -> Contender:
     """Import a library."""
     return partial(run_library, import_module(f"benchmarks.rivals.epochs_{library}").evolve)
 
 
-def check_alike(name: str, outcome: Outcome, objective: Objective, expected: int) -> None:
+def check_alike(name: str, outcome: BestFound, objective: Objective, expected: int) -> None:
     """Raise RuntimeError unless a run did the work and its best is worth what it says."""
     if abs(outcome.evaluations - expected) > TOLERANCE * expected:
         raise RuntimeError(f"{name} evaluates {outcome.evaluations} chromosomes, not {expected}")
@@ -99,8 +107,8 @@ def check_alike(name: str, outcome: Outcome, objective: Objective, expected: int
 
 
 def time_epoch(
-    run: Run, problem: Problem, short: Planner, long: Planner, seed: int
-) -> tuple[float, Callable[[], Outcome]]:
+    run: Contender, problem: Problem, short: Planner, long: Planner, seed: int
+) -> tuple[float, Callable[[], BestFound]]:
     """Give the microseconds of one epoch more, and the long run's outcome."""
     run(problem, short, seed)  # its own data in the caches, not the last rival's
     less, _ = timed(partial(run, problem, short, seed))
@@ -115,8 +123,8 @@ def measure(quick: bool) -> list[Row]:
 
 def _compare(name: str, epochs: tuple[int, int], rounds: int) -> list[Row]:
     problem = make_problem(MAP)
-    short, long = (make_planner(name, max_epochs=number) for number in epochs)
-    runs: dict[str, Run] = {"gapath": run_gapath}
+    short, long = (make_bspline_ga(name, max_epochs=number) for number in epochs)
+    runs: dict[str, Contender] = {"gapath": run_gapath}
     runs |= {library: library_run(library) for library in LIBRARIES if not why_not(library)}
     _, results = interleave(
         [

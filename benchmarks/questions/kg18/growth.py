@@ -1,7 +1,7 @@
 """GA 1-3 against A* as maps grow: KG18's four classes of known maps, 5000 to 16 million fields.
 
 The generator of the classes draws 100 x 50 fields and no others, so larger maps are its canonical
-ones with every field repeated (`np.kron`): obstacles and gaps grow with the map. Start and target
+ones with every field repeated: obstacles and gaps grow with the map. Start and target
 stay single fields, in the middle of what theirs have become; the fields around them have the base
 weight, since a block that weighs nothing would leave A* without a heuristic. Planners are as
 configured, what they measure in fields included. Times in microseconds, of `Planner.plan`.
@@ -15,8 +15,6 @@ configured, what they measure in fields included. Times in microseconds, of `Pla
 from dataclasses import replace
 from functools import partial
 
-import numpy as np
-
 from benchmarks.measure import (
     MAPS,
     SETTINGS,
@@ -27,6 +25,7 @@ from benchmarks.measure import (
     make_problem,
     quartiles,
     ratios,
+    repeat_fields,
     timed,
 )
 from gapath.kernels.rng import stream
@@ -44,7 +43,7 @@ def enlarged(problem: Problem, cols: int, rows: int) -> Problem:
     weights = grid.weights.copy()
     for x, y in (problem.start, problem.target):
         weights[y, x] = BASE_WEIGHT
-    weights = np.kron(weights, np.ones((down, across)))
+    weights = repeat_fields(weights, across, down)
     start, target = (
         (x * across + across // 2, y * down + down // 2) for x, y in (problem.start, problem.target)
     )
@@ -58,7 +57,7 @@ def time_tables(problem: Problem, times: int) -> tuple[list[float], list[float]]
     tables, least = [], []
     for _ in range(times):
         grid = replace(problem.map)  # maps keep what they have built
-        tables.append(timed(lambda grid=grid: grid.table)[0])
+        tables.append(timed(partial(getattr, grid, "table"))[0])
         ends = (problem.start, problem.target)
         least.append(timed(partial(grid.least_weight, *ends))[0])
     return tables, least

@@ -12,6 +12,7 @@ from dataclasses import replace
 
 from benchmarks.measure import MAPS, SETTINGS, Row, make_planner, make_problem
 from gapath.discovery import yaml_values
+from gapath.events import Recorder
 from gapath.problem import Problem
 from gapath.recorders import mcap
 from gapath.runs.config import Run
@@ -21,7 +22,7 @@ from gapath.store.settings import flatten
 from gapath.tasks.plan import Task as PlanTask
 
 
-def _execute(run: Run, recorders: list[mcap.Recorder]) -> tuple[float, float]:
+def _execute(run: Run, recorders: list[Recorder]) -> tuple[float, float]:
     """Execute a run in a temporary folder; give its wall time and its planning time, s."""
     with tempfile.TemporaryDirectory() as folder:
         begin = time.perf_counter()

@@ -11,7 +11,7 @@ import os
 import random
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -21,19 +21,20 @@ from benchmarks.measure import (
     Calls,
     Row,
     interleave,
-    make_planner,
+    make_bspline_ga,
     make_problem,
     quartiles,
     ratios,
 )
 from gapath.kernels.rng import stream
+from gapath.planners.bspline_ga import Planner
 from gapath.planning.shortest_path import shortest_path
 from gapath.planning.simulation import plan_trials
 from gapath.planning.threads import in_order
 from gapath.problem import Problem
 
-Setting = tuple[Problem, Any]
-Job = tuple[Problem, Any, range]
+Setting: TypeAlias = tuple[Problem, Planner]
+Job: TypeAlias = tuple[Problem, Planner, range]
 
 RUNS = 10
 """Runs of a job."""
@@ -64,7 +65,7 @@ def measure(quick: bool) -> list[Row]:
     if (os.cpu_count() or 1) < 2:
         return [{"order": "any", "one / two": "skipped: one processor"}]
     seeds, rounds = (RUNS, 1) if quick else (100, 7)
-    settings = [(make_problem(name), make_planner(ga)) for name in MAPS for ga in SETTINGS]
+    settings = [(make_problem(name), make_bspline_ga(ga)) for name in MAPS for ga in SETTINGS]
     batches = [range(first, first + RUNS) for first in range(0, seeds, RUNS)]
     fast_first = [(*setting, batch) for setting in settings for batch in batches]
     mixed = random.Random(0).sample(fast_first, len(fast_first))

@@ -14,7 +14,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.measure import Row, interleave, make_bspline_ga, make_problem, quartiles, ratios
+from benchmarks.measure import (
+    Row,
+    interleave,
+    make_bspline_ga,
+    make_problem,
+    quartiles,
+    ratios,
+    repeat_fields,
+)
 from gapath.kernels.history import EPOCHS
 from gapath.kernels.jit import kernel
 from gapath.kernels.kg18.bspline import basis
@@ -86,13 +94,13 @@ def vary_many(
     way: Way,
     parents: NDArray[np.int32],
     words: NDArray[np.uint64],
+    shift: int,
     threshold: np.uint64,
     changes: NDArray[np.int32],
     limits: NDArray[np.int32],
     children: NDArray[np.int32],
     genes: int,
 ) -> None:
-    zero = np.int64(0)
     for i in range(children.shape[0]):
         a, b = i % SELECTED, 7 * i % SELECTED
         mixing = Mixing(0.8, 0.2, 0.55)
@@ -104,7 +112,7 @@ def vary_many(
             mixing,
             words,
             i,
-            zero,
+            shift,
             threshold,
             changes,
             limits,
@@ -131,7 +139,7 @@ def breeding(rounds: int) -> Row:
     }
 
     def run(way: Way) -> NDArray[np.int32]:
-        vary_many(way, parents, words, threshold, changes, limits, children[way], genes)
+        vary_many(way, parents, words, 0, threshold, changes, limits, children[way], genes)
         return children[way][:, 2 : genes - 2]
 
     return compare(
@@ -197,7 +205,7 @@ def batch(rounds: int) -> Row:
 
 def table(rounds: int) -> Row:
     """Build the map's table by a kernel."""
-    weights = np.kron(make_problem("kg18_test4").map.weights, np.ones((10, 10)))
+    weights = repeat_fields(make_problem("kg18_test4").map.weights, 10, 10)
 
     def by_kernel() -> NDArray[np.int32]:
         found = np.empty(weights.shape, dtype=np.int32)
@@ -205,7 +213,7 @@ def table(rounds: int) -> Row:
         return found
 
     def by_numpy() -> NDArray[np.int32]:
-        found = np.floor(weights * SCALE + 0.5).astype(np.int32)
+        found: NDArray[np.int32] = np.floor(weights * SCALE + 0.5).astype(np.int32)
         found[weights == 1.0] = OBSTACLE
         return found
 

@@ -185,7 +185,7 @@ def time_lines(scene: Scene, lines: int, rounds: int) -> Row:
     ends = np.random.default_rng(0).integers(0, (cols, rows), (lines, 2, 2)).astype(np.int32)
     numbers = ends.reshape(lines, 4).tolist()
     calls: Calls = {
-        "gapath": lambda: [bool(line_is_free(table, *line, 0)) for line in numbers],
+        "gapath": lambda: [bool(line_is_free(table, a, b, c, d, 0)) for a, b, c, d in numbers],
         "XOR": lambda: [drawn_and_compared(image, line) for line in ends],
     }
     times, found = interleave([calls] * (1 + rounds))

@@ -17,9 +17,16 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from benchmarks.measure import Calls, Row, interleave, make_planner, make_problem, quartiles, ratios
+from benchmarks.measure import (
+    Calls,
+    Row,
+    interleave,
+    make_planner,
+    make_problem,
+    quartiles,
+    ratios,
+    repeat_fields,
+)
 from gapath.grid import GridMap
 from gapath.kernels.rng import stream
 from gapath.problem import Plan, Problem
@@ -36,7 +43,7 @@ EPOCHS = {"gapath": 200, "DEAP": 50, "twin": 3}
 def enlarged(times: int) -> Problem:
     """Pose search space 7 with `times` x `times` fields for each."""
     small = make_problem("s04_sp07").map
-    grid = GridMap(small.name, np.kron(small.weights, np.ones((times, times))))
+    grid = GridMap(small.name, repeat_fields(small.weights, times, times))
     return Problem(grid, (0, 0), (grid.cols - 1, grid.rows - 1))
 
 

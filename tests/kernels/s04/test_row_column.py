@@ -30,15 +30,15 @@ from gapath.kernels.s04.genotype import (
 from gapath.kernels.units import OBSTACLE, SCALE
 from gapath.planning.path import heading_changes, octile_length, path_weights
 from gapath.problem import Problem
-from gapath.survey.row_column import Frame
+from gapath.survey.row_column import SquareView
 
 
-def measured(frame, chromosomes):
+def measured(view, chromosomes):
     n, size = chromosomes.location.shape
     sums, measures, walk = empty_sums(n), empty_measures(size), empty_walk(size)
-    running_sums(frame.table, *frame.flips, sums)
+    running_sums(view.table, *view.flips, sums)
     for _ in range(2):  # the second time on memory that is used
-        measure(chromosomes, frame.ends, sums, measures, walk)
+        measure(chromosomes, view.ends, sums, measures, walk)
     return measures
 
 
@@ -52,7 +52,7 @@ def one(flag, location, direction, switch):
 
 
 def in_a_corner_of(n):
-    return Frame.of(Problem(GridMap("free", np.full((n, n), 0.5)), (0, 0), (n - 1, n - 1)))
+    return SquareView.of(Problem(GridMap("free", np.full((n, n), 0.5)), (0, 0), (n - 1, n - 1)))
 
 
 NONE = [5, 5]
@@ -98,10 +98,10 @@ def test_vertices_by_hand(flag, switch, vertices):
 def test_a_path_by_hand(flag, direction, switch, points, length, turns):
     """Two inner vertices on 4 x 4 fields, at locations 2 and 1."""
     chromosome = one(flag, [2, 1], direction, switch)
-    frame = in_a_corner_of(4)
+    view = in_a_corner_of(4)
     expected = [[int(digit) for digit in point] for point in points.split()]
-    assert decode(as_rows(chromosome), frame.ends)[0].tolist() == expected
-    found = measured(frame, chromosome)
+    assert decode(as_rows(chromosome), view.ends)[0].tolist() == expected
+    found = measured(view, chromosome)
     assert (found.lengths[0], found.turns[0]) == (length, turns)
     assert found.keys[0] == (length + 1) * SCALE // 2  # every entered field weighs one half
 
@@ -110,32 +110,32 @@ def test_obstacles_count_as_often_as_they_are_entered():
     """There and back along the upper row, over one obstacle; down beside it, over none."""
     weights = np.full((4, 4), 0.5)
     weights[0, 1] = 1.0
-    frame = Frame.of(Problem(GridMap("one", weights), (0, 0), (3, 3)))
+    view = SquareView.of(Problem(GridMap("one", weights), (0, 0), (3, 3)))
     for direction, obstacles in (([1, 1, 0], 1), ([0, 0, 0], 0)):
-        key = int(measured(frame, one(0, [2, 0], direction, [3, 3])).keys[0])
+        key = int(measured(view, one(0, [2, 0], direction, [3, 3])).keys[0])
         assert key >> KEY_BITS == obstacles
     across = one(1, [0, 3], [1, 1, 1], [3, 3])  # right through it to (2, 0), then down
-    assert int(measured(frame, across).keys[0]) >> KEY_BITS == 1
+    assert int(measured(view, across).keys[0]) >> KEY_BITS == 1
 
 
 @settings(max_examples=300)
 @given(problems(most=9, least=1), st.integers(0, 2**32 - 1), st.integers(1, 40))
 def test_paths_and_measures_equal_the_twin(problem, seed, size):
-    frame = Frame.of(problem)
-    n = frame.side
+    view = SquareView.of(problem)
+    n = view.side
     chromosomes = draw_chromosomes(np.random.default_rng(seed), size, n)
     rows = as_rows(chromosomes)
     weights, mirror = twin.mirrored(problem.map.weights, (problem.start, problem.target))
     start, target = mirror(problem.start), mirror(problem.target)
-    assert frame.ends == (*start, *target)
+    assert view.ends == (*start, *target)
 
     paths = [twin.corners(twin.Chromosome.of(row), start, target) for row in rows]
-    assert decode(rows, frame.ends).tolist() == [[list(point) for point in path] for path in paths]
+    assert decode(rows, view.ends).tolist() == [[list(point) for point in path] for path in paths]
     on_the_map = [[list(mirror(point)) for point in path] for path in paths]
-    assert frame.paths(rows).tolist() == on_the_map
+    assert view.paths(rows).tolist() == on_the_map
 
     expected = [twin.measure(weights, twin.walk(path)) for path in paths]
-    found = measured(frame, chromosomes)
+    found = measured(view, chromosomes)
     keys = [(collisions << KEY_BITS) + cost for (collisions, cost), _, _ in expected]
     assert found.keys.tolist() == keys
     assert found.lengths.tolist() == [length for _, length, _ in expected]
@@ -145,14 +145,14 @@ def test_paths_and_measures_equal_the_twin(problem, seed, size):
 @given(problems(most=9, least=1), st.integers(0, 2**32 - 1))
 def test_measures_are_those_of_the_fields_of_the_path(problem, seed):
     """Counted as `gapath.planning.path` counts, on the map padded to a square."""
-    frame = Frame.of(problem)
-    n = frame.side
+    view = SquareView.of(problem)
+    n = view.side
     weights, _ = twin.mirrored(problem.map.weights, (problem.start, problem.target))
     beyond = (0, n - problem.map.rows), (0, n - problem.map.cols)
     padded = GridMap("padded", np.pad(weights, beyond, constant_values=1.0))
     chromosomes = draw_chromosomes(np.random.default_rng(seed), 20, n)
-    found = measured(frame, chromosomes)
-    for i, points in enumerate(decode(as_rows(chromosomes), frame.ends)):
+    found = measured(view, chromosomes)
+    for i, points in enumerate(decode(as_rows(chromosomes), view.ends)):
         fields = polyline(points)
         assert naive.polyline([tuple(map(int, point)) for point in points]) == [
             tuple(field) for field in fields.tolist()
@@ -169,8 +169,10 @@ def test_the_longest_path_of_the_largest_map_fits_a_key():
     chromosomes = empty_chromosomes(1, n)
     chromosomes.location[:, 0] = [(n - 1) * (row % 2) for row in range(n)]
     chromosomes.direction[:] = 1
-    frame = Frame(np.full((n, n), OBSTACLE, dtype=np.int32), Ends(0, 0, n - 1, n - 1), (False,) * 2)
-    found = measured(frame, chromosomes)
+    view = SquareView(
+        np.full((n, n), OBSTACLE, dtype=np.int32), Ends(0, 0, n - 1, n - 1), (False,) * 2
+    )
+    found = measured(view, chromosomes)
     fields = int(found.lengths[0]) + 1
     assert fields == n * n - (n - 1)  # the last row is entered at its end
     assert found.keys[0] == fields << KEY_BITS

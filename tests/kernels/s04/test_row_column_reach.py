@@ -17,7 +17,7 @@ from gapath.kernels.s04.genotype import Genotype
 from gapath.mapio.asciigrid import Reader
 from gapath.planning.flaw import flaw
 from gapath.problem import CornerCutting, Problem
-from gapath.survey.row_column import Frame, express
+from gapath.survey.row_column import SquareView, express
 
 ALL = [Genotype(*genotype) for genotype in (*GENOTYPES.values(), (True, 1))]
 
@@ -70,7 +70,7 @@ def check_witness(problem, genotype, row):
     weights, mirror = twin.mirrored(problem.map.weights, (problem.start, problem.target))
     points = twin.corners(chromosome, mirror(problem.start), mirror(problem.target))
     assert twin.measure(weights, twin.walk(points))[0][0] == 0
-    path = polyline(Frame.of(problem).paths(row[np.newaxis])[0])
+    path = polyline(SquareView.of(problem).paths(row[np.newaxis])[0])
     for rule in (problem.corner_cutting, CornerCutting.NO_DIAGONALS):
         assert flaw(Problem(problem.map, problem.start, problem.target, rule), path) is None
     used = [gene for gene in chromosome.switch if gene < n - 1]

@@ -4,7 +4,7 @@ import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 from gapath.components import build
 from gapath.errors import InputError
@@ -40,12 +40,12 @@ class Task:
 
     planner: Planner
 
-    name = "round_trip"
-    groups = ("planner",)
-    row = RoundTripRow
-    success = "came_back"
-    threaded = False
-    events = (TrialStarted, TrialFinished)
+    name: ClassVar[str] = "round_trip"
+    groups: ClassVar[tuple[str, ...]] = ("planner",)
+    row: ClassVar[type[Any]] = RoundTripRow
+    success: ClassVar[str] = "came_back"
+    threaded: ClassVar[bool] = False
+    events: ClassVar[tuple[type[Any], ...]] = (TrialStarted, TrialFinished)
 
     @classmethod
     def make(cls, settings: Mapping[str, Any]) -> Self:
