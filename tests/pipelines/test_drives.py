@@ -15,8 +15,9 @@ from gapath.pipelines.kg18.drives import table as table_drives
 from gapath.pipelines.kg18.drives import table_calls as table_drive_calls
 from gapath.pipelines.kg18.drives import table_choices as table_drive_choices
 from gapath.pipelines.kg18.drives import table_classes as table_drive_classes
-from gapath.pipelines.numbers.drive_summary import over_instances, summarise_drives
+from gapath.pipelines.numbers.drive_summary import summarise_drives
 from gapath.pipelines.numbers.statistics import wilson
+from gapath.pipelines.numbers.summary import over_instances
 from gapath.pipelines.reading.collect import collect
 from gapath.pipelines.report.report import make_report
 from gapath.pipelines.sweeps import table as table_drives_overview
@@ -24,7 +25,8 @@ from gapath.problem import Answer, PlanStatus, Problem
 from gapath.recorders.mcap import FILE, read_events
 from gapath.store.records import find_runs
 
-from .conftest import drive_settings, make_map, make_path, sign
+from .conftest import sign
+from .made_up import drive_settings, make_map, make_path
 
 TABLES = (
     table_drives, table_drive_calls, table_drive_classes, table_drive_choices,
@@ -119,13 +121,14 @@ def test_who_draws_no_random_number_has_no_interval():
 @given(st.lists(st.tuples(st.integers(0, 4), st.booleans()), min_size=1, max_size=30))
 def test_over_instances_weighs_instances_alike(rows):
     frame = pd.DataFrame(rows, columns=["map_instance", "reached"])
-    rate, interval, instances = over_instances(frame)
+    row = over_instances(frame, "reached", "rate")
     rates = [
         np.mean([reached for other, reached in rows if other == instance])
         for instance in {instance for instance, _ in rows}
     ]
-    assert instances == len(rates)
-    assert rate == pytest.approx(np.mean(rates))
+    assert row["instances"] == len(rates)
+    assert row["rate"] == pytest.approx(np.mean(rates))
+    interval = row["rate_low"], row["rate_high"]
     assert interval == pytest.approx(wilson(float(np.mean(rates)), len(rates)))
 
 
