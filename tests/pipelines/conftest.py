@@ -22,7 +22,7 @@ from gapath.store.records import (
 from gapath.store.runfolder import LOCK, RunFolder
 from gapath.store.settings import nested
 
-from .made_up import (
+from .synthetic import (
     MAPS,
     NOTHING,
     PLANNERS,

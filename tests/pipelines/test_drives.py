@@ -26,7 +26,7 @@ from gapath.recorders.mcap import FILE, read_events
 from gapath.store.records import find_runs
 
 from .conftest import sign
-from .made_up import drive_settings, make_map, make_path
+from .synthetic import drive_settings, make_map, make_path
 
 TABLES = (
     table_drives, table_drive_calls, table_drive_classes, table_drive_choices,

@@ -27,7 +27,7 @@ from gapath.runs.naming import Method
 from gapath.store.records import find_runs
 from gapath.tasks.plan import Task as PlanTask
 
-from .made_up import plan_settings
+from .synthetic import plan_settings
 
 PLANNERS = {
     "visibility_ga": {},
