@@ -6,31 +6,28 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gapath.errors import InputError
-from gapath.events import Called, Outcome, RunStarted, Stepped
-from gapath.pipelines.kg18.drives import figure_paths as figure_drive_paths
-from gapath.pipelines.kg18.drives import figure_ratios as figure_drive_ratios
-from gapath.pipelines.kg18.drives import figure_times as figure_drive_times
+from gapath.events import Called, RunStarted
 from gapath.pipelines.kg18.drives import table as table_drives
 from gapath.pipelines.kg18.drives import table_calls as table_drive_calls
 from gapath.pipelines.kg18.drives import table_choices as table_drive_choices
 from gapath.pipelines.kg18.drives import table_classes as table_drive_classes
-from gapath.pipelines.numbers.drive_summary import over_instances, summarise_drives
+from gapath.pipelines.numbers.drive_summary import summarise_drives
 from gapath.pipelines.numbers.statistics import wilson
+from gapath.pipelines.numbers.summary import over_instances
 from gapath.pipelines.reading.collect import collect
 from gapath.pipelines.report.report import make_report
 from gapath.pipelines.sweeps import table as table_drives_overview
 from gapath.problem import Answer, PlanStatus, Problem
-from gapath.recorders.mcap import FILE, read_events
+from gapath.recorders.mcap import FILE
 from gapath.store.records import find_runs
 
-from .conftest import drive_settings, make_map, make_path, sign
+from .conftest import sign
+from .synthetic import drive_settings, make_map, make_path
 
 TABLES = (
     table_drives, table_drive_calls, table_drive_classes, table_drive_choices,
     table_drives_overview,
 )  # fmt: skip
-FIGURES = (figure_drive_times, figure_drive_paths, figure_drive_ratios)
 
 
 @pytest.fixture(scope="module")
@@ -119,23 +116,15 @@ def test_who_draws_no_random_number_has_no_interval():
 @given(st.lists(st.tuples(st.integers(0, 4), st.booleans()), min_size=1, max_size=30))
 def test_over_instances_weighs_instances_alike(rows):
     frame = pd.DataFrame(rows, columns=["map_instance", "reached"])
-    rate, interval, instances = over_instances(frame)
+    row = over_instances(frame, "reached", "rate")
     rates = [
         np.mean([reached for other, reached in rows if other == instance])
         for instance in {instance for instance, _ in rows}
     ]
-    assert instances == len(rates)
-    assert rate == pytest.approx(np.mean(rates))
+    assert row["instances"] == len(rates)
+    assert row["rate"] == pytest.approx(np.mean(rates))
+    interval = row["rate_low"], row["rate_high"]
     assert interval == pytest.approx(wilson(float(np.mean(rates)), len(rates)))
-
-
-@given(st.lists(st.tuples(st.integers(10, 30), st.booleans()), min_size=1, max_size=30))
-def test_arrived_within_counts_as_the_definition_does(rows):
-    frame = pd.DataFrame(rows, columns=["steps_ratio", "reached"])
-    ratios, shares = figure_drive_ratios.arrived_within(frame)
-    assert list(ratios) == sorted({ratio for ratio, reached in rows if reached})
-    for at, share in zip(ratios, shares, strict=True):
-        assert share == pytest.approx(np.mean([reached and ratio <= at for ratio, reached in rows]))
 
 
 def test_table_of_drives(case):
@@ -273,61 +262,6 @@ def test_choices_are_held_against_the_first_row(case):
     assert better > 0
     assert list(table.data["better"])[:2] == [0, better]
     assert list(table.data["worse"])[:2] == [0, 0]
-
-
-def test_trails_are_those_of_the_log(case):
-    _, runs = of(case, "drives")
-    run = next(run for run in runs if run.known.map == "kg18_map4")
-    example = figure_drive_paths.read_trails(read_events(run.folder / FILE), {0, 3, 7})
-    places: dict[int, list[tuple[int, int]]] = {0: [], 3: [], 7: []}
-    for event in read_events(run.folder / FILE):
-        if isinstance(event, Stepped) and event.trial in places:
-            places[event.trial].append(event.place)
-    assert [trail.places.tolist() for trail in example.trails] == [
-        [list(place) for place in places[trial]] for trial in (0, 3, 7)
-    ]
-    for trail in example.trails:
-        ends = trail.places[0].tolist(), trail.places[-1].tolist()
-        assert (ends[0] != ends[1]) == (trail.outcome is Outcome.REACHED)
-
-
-def test_a_log_that_does_not_begin_with_its_run_is_refused():
-    with pytest.raises(InputError, match="RunStarted"):
-        figure_drive_paths.read_trails(iter([]), {0})
-
-
-def test_a_drive_that_failed_is_drawn_and_said(case):
-    trials, runs = of(case, "drives")
-    easy, hard = figure_drive_paths.section(trials, runs).figures
-    assert "KG18 returned, 16 steps." in hard.alt
-    assert "returned" not in easy.alt
-
-
-@pytest.mark.parametrize("module", FIGURES)
-def test_figures_are_the_same_bytes_each_time(case, module):
-    trials, runs = of(case, "drives")
-    first, second = module.section(trials, runs), module.section(trials, runs)
-    assert len(first.figures) == (2 if module is figure_drive_paths else 1)
-    for a, b in zip(first.figures, second.figures, strict=True):
-        assert (a.svg, a.png) == (b.svg, b.png)
-        assert a.caption
-        assert "map 4" in a.alt.lower() or "Drives drawn" in a.alt
-
-
-def test_histograms_state_their_failures(case):
-    trials, runs = of(case, "drives")
-    (figure,) = figure_drive_times.section(trials, runs).figures
-    count = (
-        trials.query("map == 'kg18_map4' and navigator == 'kg18'")["outcome"] == "returned"
-    ).sum()
-    assert f"returned {count}, overran 0 of 12" in figure.alt
-    assert "unknown map 4 0 to 140 s" in figure.caption
-
-
-@pytest.mark.parametrize("module", [figure_drive_times, figure_drive_paths])
-def test_without_drives_of_kg18_there_is_no_figure(case, module):
-    trials, _ = of(case, "drives")
-    assert module.section(trials[trials["navigator"] == "dstar_lite"], []) is None
 
 
 def test_the_page_has_every_section_and_every_table_in_ascii(case, drive_outputs, tmp_path):

@@ -47,11 +47,11 @@ def test_an_example_is_of_the_first_trials_that_found_a_path(outputs):
         if run.folder.parent.name != "table1":
             continue
         found = [
-            event.path
+            event.answer.path
             for event in read_events(run.folder / FILE)
-            if isinstance(event, TrialFinished) and event.status is PlanStatus.FOUND
+            if isinstance(event, TrialFinished) and event.answer.status is PlanStatus.FOUND
         ]
-        example = figure_paths.read_example(read_events(run.folder / FILE))
+        example = figure_paths.read_found(read_events(run.folder / FILE))
         assert len(example.paths) == min(3, len(found))
         for path, expected in zip(example.paths, found, strict=False):
             assert np.array_equal(path, expected)
@@ -59,7 +59,7 @@ def test_an_example_is_of_the_first_trials_that_found_a_path(outputs):
 
 def test_a_log_that_does_not_begin_with_its_run_is_refused():
     with pytest.raises(InputError, match="RunStarted"):
-        figure_paths.read_example(iter([]))
+        figure_paths.read_found(iter([]))
 
 
 @pytest.mark.parametrize("module", [figure_evaluations, figure_convergence, figure_paths])

@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -22,8 +23,11 @@ from gapath.problem import Problem
 from gapath.recorders import mcap
 from gapath.runs.config import Run
 from gapath.runs.experiment import execute
+from gapath.runs.naming import Method
 from gapath.store.records import find_runs
 from gapath.tasks.plan import Task as PlanTask
+
+from .synthetic import plan_settings
 
 PLANNERS = {
     "visibility_ga": {},
@@ -39,10 +43,10 @@ def run(folder, experiment, grid, planner, trials=4, **values):
     made = build("planner", yaml_values("planner", planner) | values, "planner")
     problem = Problem(grid, grid.start, grid.target)
     recorders = [mcap.Recorder(flush_every=100)]
-    settings = f"task: plan\nplanner: {planner}\n"
+    settings = plan_settings(planner, values)
     execute(
         Run(
-            experiment, planner, problem, PlanTask(made), recorders, 3, trials, settings,
+            experiment, Method(planner), problem, PlanTask(made), recorders, 3, trials, settings,
             str(folder), False,
         ),
         f"gapath experiment={experiment}",
@@ -190,7 +194,7 @@ def test_damaged_logs_are_skipped_and_named(outputs, plans, tmp_path):
         folder = tmp_path / str(i)
         folder.mkdir()
         (folder / "run.mcap").write_bytes(b"nothing")
-        broken.append(type(good)(folder, good.state, good.date, good.manifest, good.fault))
+        broken.append(replace(good, folder=folder))
     for module in (figure_m22_pipeline, figure_m22_convergence, figure_m22_paths):
         assert module.section(of(plans, "m22"), broken).skipped
     with pytest.raises(InputError):

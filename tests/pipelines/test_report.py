@@ -9,7 +9,7 @@ from gapath.pipelines.page.section import find_sections
 from gapath.pipelines.report.cli import main
 from gapath.pipelines.report.report import make_report
 
-from .conftest import write_manifest, write_status
+from .conftest import sign, write_status
 
 
 class Page(HTMLParser):
@@ -132,7 +132,7 @@ def test_what_is_skipped_is_named_and_the_rest_goes_on(tmp_path, make_run, capsy
     bare = make_run(tmp_path, "table1", "kg18_test1", "ga2", log=False)
     log = torn / "run.mcap"
     log.write_bytes(log.read_bytes()[:-300])
-    write_manifest(torn, map="kg18_test2", map_instance=0, planner="ga1", seed=0, trials=20)
+    sign(torn)
     write_status(dead, "running", text="<b>& a message</b>")
     assert main([str(tmp_path)]) == 0
     page = (tmp_path / "report" / "index.html").read_text()

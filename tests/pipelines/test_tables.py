@@ -11,6 +11,7 @@ from gapath.pipelines.papers.kg18 import SECONDS, implied_epochs
 from gapath.pipelines.papers.names import label, rank
 from gapath.pipelines.reading.collect import collect
 from gapath.pipelines.sweeps import table as table_overview
+from gapath.store.records import find_runs
 
 
 def trials(**columns):
@@ -113,7 +114,7 @@ def test_classes_count_instances_not_trials():
         feasible=[True, True, True, True, True, False, False, False],
         epochs=[1, 1, 1, 1, 5, 9, 9, 9],
     )
-    (row,) = table_classes.over_instances(mine).to_dict("records")
+    row = table_classes.summarise_class(mine)
     assert row["success"] == pytest.approx((1 + 0.5 + 0) / 3)
     assert (row["success_low"], row["success_high"]) == pytest.approx(wilson(0.5, 3))
     assert (row["instances"], row["n"], row["always"], row["never"]) == (3, 8, 1, 1)
@@ -122,7 +123,7 @@ def test_classes_count_instances_not_trials():
 
 def test_overview_has_a_row_for_each_setting(outputs):
     frame = collect(outputs).trials["plan"]
-    (table,) = table_overview.section(frame, []).tables
+    (table,) = table_overview.section(frame, find_runs(outputs)).tables
     assert len(table.shown) == 40
     assert table.data["n"].sum() == len(frame)
     assert set(table.data["instances"]) == {1, 3}
@@ -145,7 +146,7 @@ def test_the_three_forms_of_a_table():
 def test_every_latex_table_is_ascii(outputs):
     frame = collect(outputs).trials["plan"]
     for module in (table1, table_classes, table_overview):
-        for table in module.section(frame, []).tables:
+        for table in module.section(frame, find_runs(outputs)).tables:
             assert table.latex().isascii()
 
 
