@@ -101,8 +101,8 @@ def test_each_experiment_map_and_method_has_its_metrics(outputs):
 
 
 def test_every_task_has_its_metrics(tmp_path, make_run, make_drive_run):
-    make_run(tmp_path, "table1", "kg18_test1", "ga1", n=3, log=False)
-    make_drive_run(tmp_path, "drives", "kg18_map1", "kg18", n=4)
+    make_run(tmp_path, "table1", "kg18_test1", "ga1", n=3)
+    make_drive_run(tmp_path, "drives", "kg18_map1", "kg18", n=4, log=True)
     files, skipped = make_report(tmp_path, tmp_path / "report")
     assert skipped == []
     assert {f"metrics_{task}.csv" for task in ("plan", "drive")} <= {file.name for file in files}
