@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from gapath.discovery import readers
 from gapath.errors import InputError
 from gapath.mapio.barn import Reader, inflated
-from gapath.mapio.file import kinds
 from gapath.planning.shortest_path import shortest_path
 from gapath.problem import Problem
 
@@ -147,7 +147,7 @@ def test_settings_out_of_range_are_refused(values, message):
 
 
 def test_json_files_are_read_as_barn_worlds():
-    assert kinds()[".json"] == "barn"
+    assert readers()[".json"] == "barn"
 
 
 def test_the_six_worlds_can_be_crossed(data):

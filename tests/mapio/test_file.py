@@ -9,8 +9,9 @@ import yaml
 from omegaconf import OmegaConf
 from PIL import Image
 
+from gapath.discovery import readers
 from gapath.errors import InputError
-from gapath.mapio.file import Reader, kinds
+from gapath.mapio.file import Reader
 
 DATA = Path(os.environ.get("GAPATH_DATA", Path(__file__).parents[3] / "shared" / "data"))
 KINDS = ("movingai", "rosmap", "image", "file")
@@ -28,7 +29,7 @@ def test_every_suffix_has_one_reader():
         ".png": "image",
         ".pgm": "image",
         ".ppm": "image",
-    }.items() <= kinds().items()
+    }.items() <= readers().items()
 
 
 def test_the_reader_is_found_by_the_suffix(tmp_path):

@@ -9,7 +9,7 @@ from gapath.pipelines.page.section import find_sections
 from gapath.pipelines.report.cli import main
 from gapath.pipelines.report.report import make_report
 
-from .conftest import sign, write_status
+from ..conftest import sign, write_status
 
 
 class Page(HTMLParser):
