@@ -2,11 +2,10 @@
 
 from collections.abc import Sequence
 
-import numpy as np
 import pandas as pd
 
 from gapath.pipelines.numbers.text import percent
-from gapath.pipelines.page.figures import legend, looks, panels, render, style
+from gapath.pipelines.page.figures import draw_shares, legend, looks, panels, render, style
 from gapath.pipelines.page.section import Figure, Section
 from gapath.pipelines.papers.names import label, rank
 from gapath.store.records import RunRecord
@@ -37,26 +36,6 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
     return Section(title="Evaluations to a feasible path", figures=(_figure(counted),))
 
 
-def reached(trials: pd.DataFrame) -> tuple[np.ndarray, np.ndarray]:
-    """Give the share of trials that have a feasible path after so many evaluations.
-
-    Parameters
-    ----------
-    trials : DataFrame
-        The trials of one planner on one map; one that failed never counts as reached.
-
-    Returns
-    -------
-    evaluations : (n,) float64
-        Ascending, each once.
-    share : (n,) float64
-        Of all trials, at that many evaluations.
-    """
-    found = trials.loc[trials["feasible"], "evaluations"].to_numpy(dtype=float)
-    evaluations, counts = np.unique(found, return_counts=True)
-    return evaluations, np.cumsum(counts) / len(trials)
-
-
 def _figure(trials: pd.DataFrame) -> Figure:
     maps = sorted(trials["map"].unique(), key=rank)
     look = looks(trials["planner"])
@@ -66,11 +45,9 @@ def _figure(trials: pd.DataFrame) -> Figure:
         for panel, name in zip(axes, maps, strict=True):
             here = trials[trials["map"] == name]
             panel.set_title(label(name, here["map_source"].iloc[0]))
-            for planner, (color, dashes) in look.items():
-                evaluations, share = reached(here[here["planner"] == planner])
-                ends = np.r_[limits[0], evaluations, limits[1]]
-                steps = np.r_[0, share, share[-1:] if share.size else 0]
-                panel.step(ends, steps, where="post", color=color, linestyle=dashes)
+            for planner, its_look in look.items():
+                mine = here[here["planner"] == planner]
+                draw_shares(panel, (mine["evaluations"], mine["feasible"]), limits, its_look)
             panel.set(xscale="log", xlim=limits, ylim=(-0.04, 1.06))
         canvas.supxlabel("evaluations", fontsize=10)
         canvas.supylabel("share of trials with a path", fontsize=10)

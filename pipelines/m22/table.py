@@ -7,11 +7,12 @@ from collections.abc import Sequence
 
 import pandas as pd
 
+from gapath.pipelines.m22.remarks import remarks_of
 from gapath.pipelines.numbers.statistics import wilson
-from gapath.pipelines.numbers.summary import spread
-from gapath.pipelines.numbers.text import NOTHING, number, percent, percent_range
+from gapath.pipelines.numbers.summary import spread, summarise_by
+from gapath.pipelines.numbers.text import NOTHING, number, percent, percent_range, tenths
 from gapath.pipelines.page.section import Section, Table
-from gapath.pipelines.papers.m22 import EXACT, IMAGE_SHARE, MAPS, PAPER
+from gapath.pipelines.papers.m22 import EXACT, MAPS, PAPER
 from gapath.pipelines.papers.names import label, rank
 from gapath.store.records import RunRecord
 
@@ -55,7 +56,7 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
             SCENES,
         ),
         tables=(_methods(methods), _scenes(trials), _stages(stages)),
-        remarks=_remarks(methods, stages),
+        remarks=remarks_of(methods, stages),
     )
 
 
@@ -107,34 +108,32 @@ def summarise_methods(trials: pd.DataFrame) -> pd.DataFrame:
         scene must not count less; the worst gap; mean epochs and evaluations and quartiles of
         seconds of all trials; the paper's f, generations and seconds.
     """
-    rows = []
-    for planner, group in trials.groupby("planner"):
-        rates = group.groupby("map")["feasible"].mean()
-        low, high = wilson(float(rates.mean()), len(rates))
-        evolves = group["epochs"].gt(0).any()
-        means = group.groupby("map")[["line_length", "gap", "above_pixels"]].mean().mean()
-        paper = PAPER.get(str(planner), (float("nan"),) * 3)
-        rows.append(
-            {
-                "planner": planner,
-                "scenes": len(rates),
-                "n": len(group),
-                "found": int(group["feasible"].sum()),
-                "success": rates.mean(),
-                "success_low": low if evolves else float("nan"),
-                "success_high": high if evolves else float("nan"),
-                "f": means["line_length"],
-                "gap": means["gap"],
-                "worst_gap": group["gap"].max(),
-                "above_pixels": means["above_pixels"],
-                "epochs": group["epochs"].mean() if evolves else float("nan"),
-                "evaluations": group["evaluations"].mean() if evolves else float("nan"),
-                **{f"seconds_{k}": v for k, v in spread(group["plan_time_s"])._asdict().items()},
-                **{f"paper_{k}": v for k, v in zip(("f", "epochs", "seconds"), paper, strict=True)},
-            }
-        )
-    rows.sort(key=lambda row: rank(str(row["planner"])))
-    return pd.DataFrame(rows)
+    return summarise_by(trials, ["planner"], _summarise_method)
+
+
+def _summarise_method(trials: pd.DataFrame) -> dict[str, float]:
+    scenes = trials.groupby("map")
+    rates = scenes["feasible"].mean()
+    low, high = wilson(float(rates.mean()), len(rates))
+    evolves = trials["epochs"].gt(0).any()
+    means = scenes[["line_length", "gap", "above_pixels"]].mean().mean()
+    paper = PAPER.get(str(trials["planner"].iloc[0]), (math.nan,) * 3)
+    return {
+        "scenes": len(rates),
+        "n": len(trials),
+        "found": int(trials["feasible"].sum()),
+        "success": rates.mean(),
+        "success_low": low if evolves else math.nan,
+        "success_high": high if evolves else math.nan,
+        "f": means["line_length"],
+        "gap": means["gap"],
+        "worst_gap": trials["gap"].max(),
+        "above_pixels": means["above_pixels"],
+        "epochs": trials["epochs"].mean() if evolves else math.nan,
+        "evaluations": trials["evaluations"].mean() if evolves else math.nan,
+        **{f"seconds_{k}": v for k, v in spread(trials["plan_time_s"])._asdict().items()},
+        **{f"paper_{k}": v for k, v in zip(("f", "epochs", "seconds"), paper, strict=True)},
+    }
 
 
 def _methods(rows: pd.DataFrame) -> Table:
@@ -146,8 +145,8 @@ def _methods(rows: pd.DataFrame) -> Table:
             "95 %": percent_range((row["success_low"], row["success_high"])),
             "f": _tenth(row["f"]),
             "f, paper": _tenth(row["paper_f"]),
-            "f above shortest, %": _part(row["gap"]),
-            "Octile above A*, %": _part(row["above_pixels"]),
+            "f above shortest, %": tenths(100 * row["gap"]),
+            "Octile above A*, %": tenths(100 * row["above_pixels"]),
             "Generations": _tenth(row["epochs"]),
             "Generations, paper": _tenth(row["paper_epochs"]),
             "Evaluations": number(round(row["evaluations"])) if row["epochs"] > 0 else NOTHING,
@@ -172,10 +171,6 @@ def _methods(rows: pd.DataFrame) -> Table:
 
 def _tenth(value: float) -> str:
     return NOTHING if pd.isna(value) else f"{value:.1f}".removesuffix(".0")
-
-
-def _part(value: float) -> str:
-    return NOTHING if pd.isna(value) else f"{100 * value:.1f}"
 
 
 def _scenes(trials: pd.DataFrame) -> Table:
@@ -262,61 +257,3 @@ def _stages(medians: pd.DataFrame) -> Table:
         pd.DataFrame(shown),
         heads=1,
     )
-
-
-def _remarks(rows: pd.DataFrame, stages: pd.DataFrame) -> tuple[str, ...]:
-    by, took = rows.set_index("planner"), stages.set_index("planner")
-    remarks = []
-    if {"visibility_ga", "visibility_ga_unlimited"} <= set(by.index):
-        remarks += _of_the_limit(by.loc["visibility_ga"], by.loc["visibility_ga_unlimited"])
-    if {"visibility_dijkstra", "visibility_ga"} <= set(by.index):
-        exact = took.loc["visibility_dijkstra"].get("search", float("nan"))
-        genetic = took.loc["visibility_ga"].get("genetic algorithm", float("nan"))
-        remarks.append(
-            f"The exact answer takes microseconds: {number(1e6 * exact)} us for Dijkstra on the "
-            f"graph, {number(1e6 * genetic)} us for the genetic algorithm. The paper's "
-            f"{number(PAPER['visibility_astar'].seconds)} s for A* are those of its "
-            "implementation, which compares whole images; it says that "
-            f"{100 * IMAGE_SHARE:.0f} % of the genetic algorithm's time goes there, too."
-        )
-    remarks.append(
-        "Here each pair of points is tested once, pixel by pixel along its line, before the search "
-        "begins, which then only looks lengths up."
-    )
-    if {"visibility_ga", "visibility_ga_resized"} <= set(by.index):
-        small, full = took.loc["visibility_ga_resized"], took.loc["visibility_ga"]
-        image = ["dilation", "keypoints", "graph"]
-        saved = full.reindex(image).sum() - small.reindex(image).sum()
-        remarks.append(
-            "Resizing is part of the paper's further work; f is then only that of paths whose "
-            f"lines are free at full size, too. It saves {number(1000 * saved)} ms, and the search "
-            f"for the scale takes {number(1000 * small.get('resizing', float('nan')))} ms: it pays "
-            "where a scale is kept for many plans."
-        )
-    if "inflated_ga3" in by.index:
-        remarks.append(
-            "KG18's planner is what the paper's other further work asks for, a genetic algorithm "
-            "over free (x, y) points: it minimises the sum of the weights of the fields, by which "
-            "a diagonal step costs no more than a straight one, and stops at its first free path."
-        )
-    return (*remarks, "The paper's seconds are those of another machine and language.")
-
-
-def _of_the_limit(limited: pd.Series, unlimited: pd.Series) -> list[str]:
-    """Say what the limit of generations without improvement does."""
-    remarks = []
-    if limited["found"] and unlimited["found"]:
-        paper = PAPER["visibility_ga_unlimited"].length / PAPER["visibility_ga"].length
-        remarks.append(
-            f"Without the limit f is {100 * (1 - unlimited['f'] / limited['f']):.1f} % lower "
-            f"(paper: {100 * (1 - paper):.1f} %), and {_part(unlimited['gap'])} % above the "
-            f"shortest path of the graph in the mean, {_part(unlimited['worst_gap'])} % at worst."
-        )
-    if limited["success"] < 1:
-        remarks.append(
-            f"With the limit {percent(1 - limited['success'])} % of the runs end without any path: "
-            "every chromosome with a line that is not free counts the same, so until one is found "
-            "by chance nothing leads to it, and 20 generations without one end the run. The paper "
-            "reports a path in each of its ten tests."
-        )
-    return remarks

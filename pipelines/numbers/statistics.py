@@ -90,6 +90,28 @@ def expected_running_time(spent: ArrayLike, success: ArrayLike) -> float:
     return float(np.sum(spent)) / successes if successes else math.inf
 
 
+def share_within(spent: ArrayLike, success: ArrayLike) -> tuple[NDArray[np.float64], ...]:
+    """Give the share of all trials that have succeeded having spent at most so much.
+
+    Parameters
+    ----------
+    spent : (n,) float
+        What each trial spent: evaluations, or steps over the fewest possible.
+    success : (n,) bool
+        Whether the trial succeeded; one that failed never counts.
+
+    Returns
+    -------
+    spent : (m,) float64
+        Ascending, each once.
+    share : (m,) float64
+        Of all trials, at that much.
+    """
+    succeeded = np.asarray(success, dtype=bool)
+    levels, counts = np.unique(np.asarray(spent, dtype=float)[succeeded], return_counts=True)
+    return levels, np.cumsum(counts) / len(succeeded)
+
+
 def by_epoch(curves: Iterable[NDArray[np.float64]]) -> NDArray[np.float64]:
     """Give the quartiles of the best fitness by epoch.
 

@@ -32,6 +32,11 @@ def number(value: float) -> str:
     return text.rstrip("0").rstrip(".") if "." in text else text
 
 
+def tenths(value: float) -> str:
+    """Write a number with one decimal, also where it is 0; `NOTHING` where it is missing."""
+    return NOTHING if math.isnan(value) else f"{value:.1f}"
+
+
 def span(low: float, high: float) -> str:
     """Write a range of numbers for people."""
     ends = number(low), number(high)

@@ -6,10 +6,13 @@ from contextlib import contextmanager
 from typing import Any, NamedTuple
 
 import matplotlib.style
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Canvas
 from matplotlib.lines import Line2D
+from numpy.typing import ArrayLike
 
+from gapath.pipelines.numbers.statistics import share_within
 from gapath.pipelines.papers.names import label, rank
 
 WIDTH = 4.6
@@ -99,6 +102,28 @@ def panels(count: int, height: float, same_axes: bool = True) -> tuple[Canvas, l
     for empty in axes[count:]:
         empty.set_axis_off()
     return canvas, axes[:count]
+
+
+def draw_shares(
+    panel: Axes, trials: tuple[ArrayLike, ArrayLike], limits: tuple[float, float], look: Look
+) -> None:
+    """Draw `share_within` of trials as steps, from one limit to the other.
+
+    Parameters
+    ----------
+    panel : Axes
+        Where.
+    trials : (n,) float, (n,) bool
+        What each trial spent, and whether it succeeded.
+    limits : (float, float)
+        Ends of the horizontal axis.
+    look : Look
+        Colour and dashes.
+    """
+    spent, share = share_within(*trials)
+    ends = np.r_[limits[0], spent, limits[1]]
+    steps = np.r_[0, share, share[-1:] if share.size else 0]
+    panel.step(ends, steps, where="post", color=look.color, linestyle=look.dashes)
 
 
 def legend(canvas: Canvas, look: dict[str, Look]) -> None:

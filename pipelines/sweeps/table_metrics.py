@@ -70,9 +70,7 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
     return Section(
         title=f"Metrics of paths: {task.name}",
         tables=(table,),
-        remarks=tuple(_first_line(module.__doc__) for module in modules.values()),
+        remarks=tuple(
+            module.__doc__.partition("\n")[0] for module in modules.values() if module.__doc__
+        ),
     )
-
-
-def _first_line(text: str | None) -> str:
-    return (text or "").strip().partition("\n")[0]

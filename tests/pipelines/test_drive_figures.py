@@ -1,8 +1,4 @@
-import numpy as np
-import pandas as pd
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from gapath.errors import InputError
 from gapath.events import Outcome, Stepped
@@ -19,15 +15,6 @@ def case(drive_outputs):
     drives = collect(drive_outputs).trials["drive"]
     runs = [run for run in find_runs(drive_outputs) if run.known.experiment == "drives"]
     return drives[drives["experiment"] == "drives"], runs
-
-
-@given(st.lists(st.tuples(st.integers(10, 30), st.booleans()), min_size=1, max_size=30))
-def test_arrived_within_counts_as_the_definition_does(rows):
-    frame = pd.DataFrame(rows, columns=["steps_ratio", "reached"])
-    ratios, shares = figure_ratios.arrived_within(frame)
-    assert list(ratios) == sorted({ratio for ratio, reached in rows if reached})
-    for at, share in zip(ratios, shares, strict=True):
-        assert share == pytest.approx(np.mean([reached and ratio <= at for ratio, reached in rows]))
 
 
 def test_trails_are_those_of_the_log(case):

@@ -195,6 +195,17 @@ def test_obstacles_are_counted_by_the_log_whatever_they_are_shown_to_cost():
     assert list(read["control_points"]) == [5, 8]
 
 
+def test_a_planner_without_control_points_has_a_row():
+    rows = {
+        "map": "kg18_map4", "map_source": "array", "part": "C", "planner": [1, 5],
+        "control_points": pd.array([4, None], dtype="Int64"), "found": True, "adopted": True,
+        "obstacles": 0, "evaluations": [10, 0],
+    }  # fmt: skip
+    table = table_drive_calls._table(table_drive_calls.summarise_calls(pd.DataFrame(rows)))
+    assert list(table.shown["Planner"]) == ["1 (k = 4)", "5"]
+    assert ",C,5,," in table.csv() and ",C,1,4," in table.csv()
+
+
 def test_calls_of_a_log_that_cannot_be_read_are_named(tmp_path, make_drive_run):
     folder = make_drive_run(tmp_path, "drives", "kg18_map1", "kg18", log=True)
     log = folder / FILE

@@ -1,5 +1,4 @@
 import numpy as np
-import pandas as pd
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -18,16 +17,6 @@ def case(outputs):
     frame = collect(outputs).trials["plan"]
     runs = [run for run in find_runs(outputs) if run.folder.parent.name == "table1"]
     return frame[frame["experiment"] == "table1"], runs
-
-
-@given(st.lists(st.tuples(st.integers(1, 30), st.booleans()), min_size=1, max_size=30))
-def test_reached_counts_as_the_definition_does(rows):
-    frame = pd.DataFrame(rows, columns=["evaluations", "feasible"])
-    evaluations, share = figure_evaluations.reached(frame)
-    assert list(evaluations) == sorted({count for count, found in rows if found})
-    for at, value in zip(evaluations, share, strict=True):
-        naive = sum(found and count <= at for count, found in rows) / len(rows)
-        assert value == pytest.approx(naive)
 
 
 @given(st.lists(st.lists(st.floats(0, 1e6), min_size=1, max_size=8), min_size=1, max_size=8))

@@ -7,6 +7,7 @@ import pytest
 from gapath.errors import InputError
 from gapath.pipelines.reading.collect import collect
 from gapath.pipelines.reading.listing import listing
+from gapath.pipelines.reading.logs import events_of, read_logs, run_start
 from gapath.store.records import find_runs
 
 from .conftest import sign, write_status
@@ -181,3 +182,32 @@ def test_a_file_that_is_no_parquet_is_named_and_the_others_are_read(run, make_ru
     assert "readable Parquet" in skipped[0].reason
     shutil.rmtree(run)
     assert collect(outputs).skipped == []
+
+
+def test_settings_that_cannot_be_read_are_named(run):
+    (run / "config.yaml").write_text("[")
+    sign(run)
+    frame, skipped = plans(run.parent.parent)
+    assert frame.empty
+    assert "config.yaml" in skipped[0].reason
+
+
+def test_a_metric_that_was_added_since_is_missing(run):
+    import pandas as pd
+
+    rows = pd.read_parquet(run / "trials.parquet").drop(columns="clearance")
+    rows.to_parquet(run / "trials.parquet")
+    sign(run)
+    frame, skipped = plans(run.parent.parent)
+    assert skipped == []
+    assert len(frame) == 5 and frame["clearance"].isna().all()
+
+
+def test_logs_are_read_where_there_are_any_and_can_be(run, make_run):
+    outputs = run.parent.parent  # its own run has no log
+    good = make_run(outputs, "table1", "kg18_test2", "ga1", n=3)
+    torn = make_run(outputs, "table1", "kg18_test3", "ga1", n=3)
+    (torn / "run.mcap").write_bytes(b"nothing")
+    found, skipped = read_logs(find_runs(outputs), lambda run: run_start(events_of(run)).trials)
+    assert [(run.folder, trials) for run, trials in found] == [(good, 3)]
+    assert [name for name, _ in skipped] == [f"table1/{torn.name}"]

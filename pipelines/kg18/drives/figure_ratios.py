@@ -2,12 +2,10 @@
 
 from collections.abc import Sequence
 
-import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from gapath.pipelines.numbers.text import percent
-from gapath.pipelines.page.figures import legend, looks, panels, render, style
+from gapath.pipelines.page.figures import draw_shares, legend, looks, panels, render, style
 from gapath.pipelines.page.section import Figure, Section
 from gapath.pipelines.papers.names import label, rank
 from gapath.store.records import RunRecord
@@ -39,26 +37,6 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
     return Section(title="Length of drives", figures=(_figure(trials[arrived]),))
 
 
-def arrived_within(drives: pd.DataFrame) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Give the share of drives that reached the target within so many times the shortest way.
-
-    Parameters
-    ----------
-    drives : DataFrame
-        The drives of one navigator on one map; one that failed never counts.
-
-    Returns
-    -------
-    ratio : (n,) float64
-        Steps / shortest, ascending, each once.
-    share : (n,) float64
-        Of all drives, at that ratio.
-    """
-    ratios = drives.loc[drives["reached"], "steps_ratio"].to_numpy(dtype=float)
-    ratio, counts = np.unique(ratios, return_counts=True)
-    return ratio, np.cumsum(counts) / len(drives)
-
-
 def _figure(trials: pd.DataFrame) -> Figure:
     maps = sorted(trials["map"].unique(), key=rank)
     look = looks(trials["navigator"])
@@ -69,11 +47,9 @@ def _figure(trials: pd.DataFrame) -> Figure:
             longest = max(1.1, here["steps_ratio"].max())
             limits = 1 - 0.04 * (longest - 1), longest + 0.04 * (longest - 1)
             panel.set_title(label(name, here["map_source"].iloc[0]), fontsize=9)
-            for navigator, (color, dashes) in look.items():
-                ratio, share = arrived_within(here[here["navigator"] == navigator])
-                ends = np.r_[limits[0], ratio, limits[1]]
-                steps = np.r_[0, share, share[-1:] if share.size else 0]
-                panel.step(ends, steps, where="post", color=color, linestyle=dashes)
+            for navigator, its_look in look.items():
+                mine = here[here["navigator"] == navigator]
+                draw_shares(panel, (mine["steps_ratio"], mine["reached"]), limits, its_look)
             panel.set(xlim=limits, ylim=(-0.04, 1.06))
         canvas.supxlabel("steps / shortest", fontsize=10)
         canvas.supylabel("share of drives at the target", fontsize=10)

@@ -6,7 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import binomtest
 
-from gapath.pipelines.numbers.statistics import expected_running_time, median_interval, wilson
+from gapath.pipelines.numbers.statistics import (
+    expected_running_time,
+    median_interval,
+    share_within,
+    wilson,
+)
 
 
 @given(st.integers(1, 2000).flatmap(lambda n: st.tuples(st.integers(0, n), st.just(n))))
@@ -50,3 +55,11 @@ def test_expected_running_time_counts_failures():
     assert expected_running_time([10, 20, 500, 500], [True, True, False, False]) == 515.0
     assert expected_running_time([500, 500], [False, False]) == math.inf
     assert expected_running_time([4, 6], [True, True]) == 5.0
+
+
+@given(st.lists(st.tuples(st.integers(1, 30), st.booleans()), min_size=1, max_size=30))
+def test_share_within_counts_as_the_definition_does(rows):
+    spent, shares = share_within(*zip(*rows, strict=True))
+    assert list(spent) == sorted({level for level, succeeded in rows if succeeded})
+    for at, share in zip(spent, shares, strict=True):
+        assert share == pytest.approx(np.mean([good and level <= at for level, good in rows]))

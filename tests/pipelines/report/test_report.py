@@ -108,6 +108,12 @@ def test_sections_are_found_and_keep_the_protocol():
         assert callable(module.section)
 
 
+def test_every_section_has_a_place_of_its_own(page):
+    ids = [attrs["id"] for tag, attrs in Page(page).tags if tag == "section"]
+    assert {"kg18-table1", "kg18-table-classes", "sweeps-table-metrics-plan"} <= set(ids)
+    assert len(ids) == len(set(ids))
+
+
 def test_only_what_was_run_is_shown(tmp_path, make_run):
     make_run(tmp_path, "plan", "kg18_test1", "ga3", n=1, log=False)
     files, _ = make_report(tmp_path, tmp_path / "report")
