@@ -281,7 +281,7 @@ def test_drives_are_logged_and_recorded():
 
 def test_the_command_writes_what_it_prints(tmp_path, monkeypatch, capsys):
     output = tmp_path / "bench"
-    monkeypatch.setattr(__main__, "QUESTIONS", ("exact",))
+    monkeypatch.setattr(__main__, "QUESTIONS", {"exact": "exact"})
     monkeypatch.setattr(sys, "argv", ["benchmarks", "--output", str(output), "--quick"])
     __main__.main()
     printed = capsys.readouterr()

@@ -83,7 +83,7 @@ def test_a_path_cheaper_than_a_stars_is_noticed():
     plan = make_planner("ga1").plan(problem, stream(0))
     growth.check_least(exact, plan)
     with pytest.raises(RuntimeError, match=r"A\* does not find the least cost"):
-        growth.check_least(replace(exact, cost=plan.cost + 1), plan)
+        growth.check_least(replace(exact, weights=plan.cost + 1), plan)
     weights = problem.map.weights.copy()
     weights[:, 50] = 1.0
     walled = Problem(replace(problem.map, weights=weights), problem.start, problem.target)

@@ -50,6 +50,8 @@ class Clock:
     planner: Planner
     seconds: float = 0.0
 
+    exact = False
+
     def plan(self, query: Situation, stream: Stream) -> Plan:
         """Plan as the planner does."""
         begin = time.perf_counter()
