@@ -100,7 +100,9 @@ def metrics() -> dict[str, tuple[Measure, type]]:
     found: dict[str, tuple[Measure, type]] = {}
     for name in kinds("metric"):
         measure = load("metric", name).measure
-        found[name] = measure, get_type_hints(measure)["return"]
+        kind: Any = get_type_hints(measure).get("return")
+        require(kind in (float, int), f"metric {name}, result", kind, "float or int")
+        found[name] = measure, kind
     return found
 
 
