@@ -3,6 +3,7 @@
 import math
 import subprocess
 import sys
+from importlib import metadata
 
 import numpy as np
 import pytest
@@ -73,8 +74,9 @@ def test_maps_that_are_not_there_are_refused(name):
 
 def test_public_names_are_there_and_imported_late():
     assert set(gapath.__all__) <= set(dir(gapath))
-    for name in gapath.__all__:
+    for name in set(gapath.__all__) - {"__version__"}:
         assert getattr(gapath, name).__module__.startswith("gapath")
+    assert gapath.__version__ == metadata.version("gapath")
     with pytest.raises(AttributeError, match="nothing"):
         gapath.nothing  # noqa: B018
     code = "import sys, gapath; sys.exit('numba' in sys.modules or 'hydra' in sys.modules)"
