@@ -99,7 +99,8 @@ def metrics() -> dict[str, tuple[Measure, type]]:
     """Find all metrics: name -> how to measure, and whether it is a float or an int."""
     found: dict[str, tuple[Measure, type]] = {}
     for name in kinds("metric"):
-        measure = load("metric", name).measure
+        measure: Any = getattr(load("metric", name), "measure", None)
+        require(callable(measure), f"metric {name}", "a module without it", "a function measure")
         kind: Any = get_type_hints(measure).get("return")
         require(kind in (float, int), f"metric {name}, result", kind, "float or int")
         found[name] = measure, kind

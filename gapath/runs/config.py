@@ -16,7 +16,7 @@ from gapath.grid import GridMap
 from gapath.problem import CornerCutting, Problem
 from gapath.runs.naming import Method, map_name, method_of
 from gapath.store.settings import flatten, nested
-from gapath.task import Task, find_task
+from gapath.task import Task, columns, find_task
 
 
 @dataclass
@@ -152,6 +152,7 @@ def make_run(config: DictConfig, choices: Mapping[str, str | None]) -> Run:
     if root.kernels != "auto":
         made = made.using(root.kernels)
     made.check(problem)
+    columns(task.row)  # a package's wrong metric is refused before anything is written
     for recorder in recorders:
         recorder.check(root.trials)
     return Run(
