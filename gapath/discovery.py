@@ -253,21 +253,36 @@ def other_packages() -> dict[str, str]:
 
 
 @lru_cache
-def other_sources() -> list[tuple[str, Path]]:
-    """List the sources of installed packages that add components: what they are changes results.
+def other_folders() -> dict[str, Path]:
+    """Give the places of installed packages that add components: name -> folder, or one module."""
+    modules = {entry.value.partition(".")[0] for entry in _all_entry_points()}
+    found = {}
+    for module in sorted(modules):
+        spec = importlib.util.find_spec(module)
+        if spec and spec.origin:
+            file = Path(spec.origin)
+            found[module] = file.parent if spec.submodule_search_locations else file
+    return found
+
+
+@lru_cache
+def other_files() -> list[tuple[str, Path]]:
+    """List the files of installed packages that add components: what they hold changes results.
 
     Returns
     -------
     list of (str, Path)
-        Each file's name, with its package's folder as the first part, and where it is.
+        Each file's name, with its package's folder as the first part, and where it is; what is
+        hidden or compiled is left out.
     """
-    modules = {entry.value.partition(".")[0] for entry in _all_entry_points()}
     found = []
-    for module in sorted(modules):
-        spec = importlib.util.find_spec(module)
-        for top in spec.submodule_search_locations or () if spec else ():
-            paths = sorted([*Path(top).rglob("*.py"), *Path(top).rglob("*.yaml")])
-            found += [(f"{module}/{path.relative_to(top).as_posix()}", path) for path in paths]
-        if spec and spec.origin and not spec.submodule_search_locations:
-            found.append((f"{module}.py", Path(spec.origin)))
+    for module, top in other_folders().items():
+        if top.is_file():
+            found.append((top.name, top))
+            continue
+        for path in sorted(top.rglob("*")):
+            name = path.relative_to(top)
+            hidden = any(part.startswith((".", "__pycache__")) for part in name.parts)
+            if path.is_file() and not hidden:
+                found.append((f"{module}/{name.as_posix()}", path))
     return found

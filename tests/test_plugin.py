@@ -69,7 +69,7 @@ def test_its_planner_runs_is_recorded_and_reproduced(site, tmp_path):
     assert "reproduced" in succeed(site, tmp_path, "gapath-log", "verify", folder / "run.mcap")
     manifest = json.loads((folder / "manifest.json").read_bytes())
     assert manifest["versions"]["gapath-example"] == "1.2.3"
-    assert manifest["changes"] == {"tries": 500}
+    assert manifest["changes"] == {"planner.tries": 500}
     rows = pd.read_parquet(folder / "trials.parquet")
     assert (rows["detour"] >= 1).all()
     assert "planner.tries: 500" in succeed(

@@ -37,10 +37,12 @@ def _package_sources(package: str) -> Iterable[Path]:
     return Path(file).parent.glob("*.py") if file else []  # a notebook has no file
 
 
-def _user_cache() -> Path:
-    if "XDG_CACHE_HOME" in os.environ:
-        return Path(os.environ["XDG_CACHE_HOME"])
-    return Path.home() / ".cache"
+def cache_root() -> Path:
+    """Give the folder of all caches of kernels; raises RuntimeError without a home directory."""
+    if "NUMBA_CACHE_DIR" in os.environ:
+        return Path(os.environ["NUMBA_CACHE_DIR"])
+    user = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return Path(user) / "gapath" / "kernels"
 
 
 @cache
@@ -49,8 +51,7 @@ def _cache_folder(package: str) -> str | None:
     try:
         sources = [sorted(_package_sources(name)) for name in sorted({_OWN, package})]
         key = hashlib.sha256(b"\0".join(path.read_bytes() for part in sources for path in part))
-        root = os.environ.get("NUMBA_CACHE_DIR") or _user_cache() / "gapath" / "kernels"
-        folder = Path(root) / key.hexdigest()[:16]
+        folder = cache_root() / key.hexdigest()[:16]
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             return str(folder)

@@ -15,6 +15,7 @@ from gapath.events import Recorder, Settings
 from gapath.grid import GridMap
 from gapath.problem import CornerCutting, Problem
 from gapath.runs.naming import Method, map_name, method_of
+from gapath.store.inputs import Inputs, watched
 from gapath.store.settings import flatten, nested
 from gapath.task import Task, columns, find_task
 
@@ -88,6 +89,8 @@ class Run:
         Run again what is there already.
     threads : int
         Threads that do the trials; they change no result.
+    map_inputs, method_inputs : mapping
+        The files that the map and the method were made from: path -> SHA-256.
     """
 
     experiment: str
@@ -101,6 +104,13 @@ class Run:
     output: str
     force: bool
     threads: int = 1
+    map_inputs: Inputs = field(default_factory=dict, repr=False)
+    method_inputs: Inputs = field(default_factory=dict, repr=False)
+
+    @property
+    def inputs(self) -> Inputs:
+        """All files that it reads."""
+        return {**self.map_inputs, **self.method_inputs}
 
 
 def conf_folder() -> str:
@@ -148,7 +158,10 @@ def make_run(config: DictConfig, choices: Mapping[str, str | None]) -> Run:
     recorders: list[Recorder] = [
         build("recorder", values, f"recorder.{name}") for name, values in root.recorder.items()
     ]
-    problem, made = read_problem(root), task.make(settings)
+    with watched() as map_inputs:
+        problem = read_problem(root)
+    with watched() as method_inputs:
+        made = task.make(settings)
     if root.kernels != "auto":
         made = made.using(root.kernels)
     made.check(problem)
@@ -167,6 +180,8 @@ def make_run(config: DictConfig, choices: Mapping[str, str | None]) -> Run:
         root.output,
         root.force,
         root.threads,
+        map_inputs,
+        method_inputs,
     )
 
 

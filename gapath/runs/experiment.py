@@ -26,7 +26,7 @@ from gapath.store.records import (
 )
 from gapath.store.rows import parquet
 from gapath.store.runfolder import Busy, RunFolder
-from gapath.store.settings import nested
+from gapath.store.settings import nested, tabular
 from gapath.task import Batch, columns
 
 
@@ -113,7 +113,7 @@ def execute(run: Run, command: str, progress: bool = True) -> Execution:
     InputError
         If the folder cannot be written.
     """
-    key = run_key(run.settings, run.method.name, run.problem)
+    key = run_key(run.settings, run.problem, run.inputs)
     folder = RunFolder(Path(run.output) / run.experiment / key)
     folder.create()
     try:
@@ -133,8 +133,7 @@ def _execute_held(run: Run, folder: RunFolder, key: str, command: str, progress:
         write_whole(folder.path / SETTINGS, config.encode())
         optimum = run.task.optimum(run.problem)
         rows, recorded = _do_trials(run, optimum, folder, progress)
-        table = parquet(columns(run.task.row), [row.values() for row in rows])
-        write_whole(folder.path / TRIALS, table)
+        write_whole(folder.path / TRIALS, _table(run, rows))
         names = [SETTINGS, TRIALS, *recorded]
         folder.keep_only([*names, STATUS, MANIFEST])
         _manifest(run, folder, key, command, names).write(folder)
@@ -189,21 +188,33 @@ def _do_trials(
         raise
 
 
+def _table(run: Run, rows: list[Any]) -> bytes:
+    """Give the trials' rows, and each setting as a column unless it stands in them already."""
+    types = columns(run.task.row)
+    there = {*types, "name"}  # the rows' experiment
+    own = {key: value for key, value in tabular(run.settings).items() if key not in there}
+    return parquet(types, [row.values() for row in rows], own)
+
+
 def _manifest(run: Run, folder: RunFolder, key: str, command: str, names: list[str]) -> Manifest:
     return Manifest(
         key=key,
-        setting=setting_hash(run.settings, run.method.name, run.problem),
+        setting=setting_hash(run.settings, run.problem, run.method_inputs),
         experiment=run.experiment,
         task=run.task.name,
         map=run.problem.map.name,
         map_instance=run.problem.map.instance,
         map_digest=run.problem.map.digest,
+        start=str(run.problem.start),
+        target=str(run.problem.target),
         method=run.method.name,
         preset=run.method.preset,
         changes=dict(run.method.changes),
         seed=run.seed,
         trials=run.trials,
         command=command,
+        map_inputs=dict(run.map_inputs),
+        method_inputs=dict(run.method_inputs),
         versions=versions(),
         files={
             name: FileEntry(folder.sha256(name), (folder.path / name).stat().st_size)

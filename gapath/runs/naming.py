@@ -1,6 +1,6 @@
 """What a run's map and method are called in tables: by name, and what differs from the YAML."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from importlib.resources import files
 from pathlib import Path
 from types import MappingProxyType
@@ -28,7 +28,8 @@ class Method(NamedTuple):
     @property
     def name(self) -> str:
         """The name in tables: "ga3[population=60]", "kg18[sensor.range=8]"."""
-        return _with_changes(self.preset, self.changes)
+        shown = ((key.partition(".")[2] or key, value) for key, value in self.changes.items())
+        return with_changes(self.preset, shown)
 
 
 def method_of(
@@ -60,10 +61,10 @@ def method_of(
             known: Any = yaml_values(group, str(name))
         else:
             known = plain.get(group, values)  # else a YAML of the user's own
-        given |= flatten(values)
-        usual |= flatten(known)
-    if given.get("known_map"):
-        given["known_map"] = _title(str(given["known_map"]))
+        given |= flatten(values, group)
+        usual |= flatten(known, group)
+    if given.get("drive.known_map"):
+        given["drive.known_map"] = _title(str(given["drive.known_map"]))
     return Method(str(choices[task.groups[0]]), _changes(given, usual))
 
 
@@ -85,7 +86,8 @@ def map_name(name: str, settings: Mapping[str, Any]) -> str:
     path = str(settings.get("path") or "")
     title = _title(path) if Path(path).stem == name else name
     given = {key: value for key, value in settings.items() if key not in _SHOWN_APART}
-    return _with_changes(title, _changes(flatten(given), flatten(_usual(settings["kind"]))))
+    changes = _changes(flatten(given), flatten(_usual(settings["kind"])))
+    return with_changes(title, changes.items())
 
 
 def _usual(kind: str) -> dict[str, Any]:
@@ -108,6 +110,7 @@ def _changes(given: Mapping[str, Value], usual: Mapping[str, Value]) -> dict[str
     return changed | dict.fromkeys(gone, "none")
 
 
-def _with_changes(name: str, changes: Mapping[str, Value]) -> str:
-    shown = sorted(f"{key}={value}" for key, value in changes.items())
+def with_changes(name: str, changes: Iterable[tuple[str, Value]]) -> str:
+    """Write a name and, in brackets behind it, what differs: for people, nobody reads it back."""
+    shown = sorted(f"{key}={value}" for key, value in changes)
     return f"{name}[{','.join(shown)}]" if shown else name

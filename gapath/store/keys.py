@@ -6,15 +6,20 @@ from functools import lru_cache
 from importlib import metadata
 from pathlib import Path
 
-from gapath.discovery import other_packages, other_sources
+from gapath.discovery import other_files, other_packages
 from gapath.events import Settings
 from gapath.problem import Problem
+from gapath.store.inputs import Inputs, contents
 from gapath.store.settings import text_of
 
 VERSIONED = ("gapath", "numpy", "numba", "mcap", "rosbags", "rerun-sdk", "hydra-core", "pyarrow")
 
 _NO_RESULT = ("trials", "recorder")
 """Settings that change no trial."""
+
+
+_NO_CODE = ("conf", "maps", "pipelines")
+"""Parts of the package that change no run but by its settings and its map."""
 
 
 @lru_cache
@@ -24,14 +29,13 @@ def code_hash() -> str:
     Returns
     -------
     str
-        Sixteen hexadecimal digits.
+        Sixteen hexadecimal digits; the same for a checkout and a wheel of the same sources.
     """
     package = Path(__file__).parents[1]
-    own = sorted(package.rglob("*.py"), key=lambda path: path.as_posix())
-    named = [(path.relative_to(package).as_posix(), path) for path in own]
-    named = [(name, path) for name, path in named if not name.startswith("pipelines/")]
+    own = sorted((path.relative_to(package).as_posix(), path) for path in package.rglob("*.py"))
+    own = [(name, path) for name, path in own if name.partition("/")[0] not in _NO_CODE]
     digest = hashlib.sha256()
-    for name, path in [*named, *other_sources()]:  # pipelines change no run
+    for name, path in [*own, *other_files()]:
         digest.update(name.encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()[:16]
 
@@ -52,17 +56,17 @@ def versions() -> dict[str, str]:
     return {"python": platform.python_version(), "code": code_hash(), **found, **others}
 
 
-def setting_hash(settings: Settings, method: str, problem: Problem) -> str:
+def setting_hash(settings: Settings, problem: Problem, inputs: Inputs) -> str:
     """Hash what two runs must share to try the same thing, with whatever code and however often.
 
     Parameters
     ----------
     settings : mapping
         The run's settings, flat.
-    method : str
-        The planner's or navigator's name in tables.
     problem : Problem
-        Map, start, target: files named by the settings may have changed.
+        Map, start, target: what the files named by the settings came to.
+    inputs : mapping
+        The files that it reads: path -> SHA-256.
 
     Returns
     -------
@@ -70,20 +74,20 @@ def setting_hash(settings: Settings, method: str, problem: Problem) -> str:
         Sixteen hexadecimal digits.
     """
     kept = {k: v for k, v in settings.items() if k.partition(".")[0] not in _NO_RESULT}
-    return _hash([text_of(dict(sorted(kept.items()))), method, *_posed(problem)])
+    return _hash([text_of(dict(sorted(kept.items()))), *_posed(problem), *contents(inputs)])
 
 
-def run_key(settings: Settings, method: str, problem: Problem) -> str:
+def run_key(settings: Settings, problem: Problem, inputs: Inputs) -> str:
     """Name a run by everything that its results depend on.
 
     Parameters
     ----------
     settings : mapping
         The run's settings, flat.
-    method : str
-        The planner's or navigator's name in tables.
     problem : Problem
-        Map, start, target: files named by the settings may have changed.
+        Map, start, target: what the files named by the settings came to.
+    inputs : mapping
+        The files that it reads: path -> SHA-256.
 
     Returns
     -------
@@ -91,7 +95,7 @@ def run_key(settings: Settings, method: str, problem: Problem) -> str:
         Sixteen hexadecimal digits.
     """
     code = [code_hash(), metadata.version("gapath")]
-    return _hash([text_of(settings), method, *_posed(problem), *code])
+    return _hash([text_of(settings), *_posed(problem), *contents(inputs), *code])
 
 
 def _posed(problem: Problem) -> list[str]:

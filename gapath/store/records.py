@@ -49,18 +49,22 @@ class Manifest:
         Its number within a generated class.
     map_digest : str
         `gapath.grid.GridMap.digest`.
+    start, target : str
+        The fields "(x, y)" from which and to which.
     method : str
         Name of the planner or navigator for people: `preset`, and what differs from it.
     preset : str
         Name of its YAML.
     changes : mapping of str to str, int, float, bool or None
-        What differed from that YAML and from ``conf/config.yaml`` when it was run.
+        Settings that differed from that YAML and from ``conf/config.yaml`` when it was run.
     seed, trials : int
         Trials 0 to trials - 1 use the random streams (seed, trial).
     command : str
         What does the same again.
     versions : mapping of str to str
         Versions of gapath and of what it stands on.
+    map_inputs, method_inputs : mapping of str to str
+        The files that the map and the method were made from: path -> SHA-256.
     files : mapping of str to FileEntry
         All files but the manifest and the status.
     """
@@ -72,6 +76,8 @@ class Manifest:
     map: str
     map_instance: int
     map_digest: str
+    start: str
+    target: str
     method: str
     preset: str
     changes: Mapping[str, Value]
@@ -79,6 +85,8 @@ class Manifest:
     trials: int
     command: str
     versions: Mapping[str, str]
+    map_inputs: Mapping[str, str]
+    method_inputs: Mapping[str, str]
     files: Mapping[str, FileEntry]
 
     def write(self, folder: RunFolder) -> None:

@@ -2,12 +2,19 @@
 
 import io
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
+from gapath.store.settings import Value
 
-def parquet(columns: Mapping[str, type], rows: Sequence[Mapping[str, Any]]) -> bytes:
+
+def parquet(
+    columns: Mapping[str, type],
+    rows: Sequence[Mapping[str, Any]],
+    constants: Mapping[str, Value] = MappingProxyType({}),
+) -> bytes:
     """Write rows as a Parquet file.
 
     Columns are made from buffers: from Python's objects pyarrow would make them with pandas,
@@ -19,6 +26,8 @@ def parquet(columns: Mapping[str, type], rows: Sequence[Mapping[str, Any]]) -> b
         Their names in order, and str, int, float or bool for each.
     rows : sequence of mapping
         One row a trial: column -> value.
+    constants : mapping of str to str, int, float, bool or None
+        Columns that have the same value in all rows, behind the others.
 
     Returns
     -------
@@ -28,25 +37,33 @@ def parquet(columns: Mapping[str, type], rows: Sequence[Mapping[str, Any]]) -> b
     import pyarrow as pa
     from pyarrow import parquet
 
-    arrays = []
-    for name, kind in columns.items():
-        values = [row[name] for row in rows]
-        if kind is str:
-            texts = [value.encode() for value in values]
-            ends = np.cumsum([0, *map(len, texts)]).astype(np.int32)
-            joined = pa.py_buffer(b"".join(texts))
-            arrays.append(pa.StringArray.from_buffers(len(rows), pa.py_buffer(ends), joined))
-        elif kind is bool:
-            bits = np.packbits(np.array(values, dtype=np.bool_), bitorder="little")
-            arrays.append(pa.Array.from_buffers(pa.bool_(), len(rows), [None, pa.py_buffer(bits)]))
-        else:
-            arrow, numpy = (
-                (pa.float64(), np.float64) if kind is float
-                else (pa.uint64(), np.uint64) if name == "seed"
-                else (pa.int64(), np.int64)
-            )  # fmt: skip
-            numbers = pa.py_buffer(np.array(values, dtype=numpy))
-            arrays.append(pa.Array.from_buffers(arrow, len(rows), [None, numbers]))
+    arrays = [
+        _array([row[name] for row in rows], np.uint64 if name == "seed" else kind)
+        for name, kind in columns.items()
+    ]
+    for value in constants.values():
+        nothing = value is None
+        arrays.append(pa.nulls(len(rows)) if nothing else _array([value] * len(rows), type(value)))
     file = io.BytesIO()
-    parquet.write_table(pa.Table.from_arrays(arrays, list(columns)), file)
+    parquet.write_table(pa.Table.from_arrays(arrays, [*columns, *constants]), file)
     return file.getvalue()
+
+
+def _array(values: list[Any], kind: type) -> Any:
+    import pyarrow as pa
+
+    if kind is str:
+        texts = [value.encode() for value in values]
+        ends = np.cumsum([0, *map(len, texts)]).astype(np.int32)
+        joined = pa.py_buffer(b"".join(texts))
+        return pa.StringArray.from_buffers(len(values), pa.py_buffer(ends), joined)
+    if kind is bool:
+        bits = np.packbits(np.array(values, dtype=np.bool_), bitorder="little")
+        return pa.Array.from_buffers(pa.bool_(), len(values), [None, pa.py_buffer(bits)])
+    known: dict[Any, Any] = {
+        float: (pa.float64(), np.float64),
+        np.uint64: (pa.uint64(), np.uint64),
+    }
+    arrow, number = known.get(kind, (pa.int64(), np.int64))
+    numbers = np.array(values, dtype=number)
+    return pa.Array.from_buffers(arrow, len(values), [None, pa.py_buffer(numbers)])

@@ -106,6 +106,33 @@ def _put(root: dict[str, Any], keys: list[str | int | None], name: str, value: V
         place = place[key]
 
 
+def tabular(settings: Settings) -> dict[str, Value]:
+    """Give settings as columns of a table have them: a value each, lists as JSON.
+
+    Parameters
+    ----------
+    settings : mapping
+        Flat settings.
+
+    Returns
+    -------
+    dict of str to str, int, float, bool or None
+        For example ``map.start``: "[0, 0]" instead of ``map.start[0]`` and ``map.start[1]``.
+    """
+    return _tabular(nested(settings), "")
+
+
+def _tabular(value: Mapping[str, Any], prefix: str) -> dict[str, Value]:
+    found: dict[str, Value] = {}
+    for key, item in value.items():
+        if isinstance(item, Mapping) and item:
+            found |= _tabular(item, f"{prefix}{key}.")
+        else:
+            plain = not isinstance(item, Mapping | list)
+            found[f"{prefix}{key}"] = cast(Value, item) if plain else json.dumps(item)
+    return found
+
+
 def text_of(settings: Settings) -> str:
     """Write flat settings as text, a line each, which is YAML too.
 

@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -12,6 +12,7 @@ from tqdm import tqdm
 
 from gapath.discovery import kinds
 from gapath.errors import InputError, require
+from gapath.pipelines.reading.names import told_apart
 from gapath.store.records import SETTINGS, TRIALS, RunRecord, find_runs
 from gapath.store.runfolder import RunFolder
 from gapath.task import columns, find_task, metrics
@@ -37,6 +38,8 @@ class Collected(NamedTuple):
     """For each task one row a trial: the columns of ``trials.parquet``, and `key`, the name of
     the run's folder."""
     skipped: list[Skipped]
+    runs: list[RunRecord]
+    """The runs that they come from, under names that tell them apart."""
 
 
 def collect(folder: str | Path) -> Collected:
@@ -57,6 +60,8 @@ def collect(folder: str | Path) -> Collected:
         Task -> one row a trial, failures included; empty if no run of the task can be used.
     skipped : list of Skipped
         The runs that were left out, and why.
+    runs : list of RunRecord
+        The runs that the trials come from, under names that tell them apart.
 
     Raises
     ------
@@ -80,25 +85,37 @@ def read_trials(runs: Iterable[RunRecord]) -> Collected:
         Task -> one row a trial.
     skipped : list of Skipped
         The runs that were left out, and why.
+    runs : list of RunRecord
+        The runs that the trials come from, under names that tell them apart.
     """
     frames: dict[str, list[pd.DataFrame]] = {task: [] for task in kinds("task")}
-    skipped = []
+    used, skipped = [], []
     kept, older = _newest(runs)
     skipped += [Skipped(run.name, run.fault) for run in kept if run.fault]
     skipped += [Skipped(run.name, f"older than {new}, of the same setting") for run, new in older]
     for run in tqdm([run for run in kept if not run.fault], "runs", disable=None):
         try:
             frames[run.known.task].append(_trials(run))
+            used.append(run)
         except InputError as error:
             skipped.append(Skipped(run.name, str(error)))
-    trials = {task: _joined(task, mine) for task, mine in frames.items()}
-    return Collected(trials, sorted(skipped))
+    used = told_apart(used)
+    trials = {task: _joined(task, mine, used) for task, mine in frames.items()}
+    return Collected(trials, sorted(skipped), used)
 
 
-def _joined(task: str, frames: list[pd.DataFrame]) -> pd.DataFrame:
-    if frames:
-        return pd.concat(frames, ignore_index=True)
-    return pd.DataFrame(columns=[*columns(find_task(task).row), "key"])
+def _joined(task: str, frames: list[pd.DataFrame], runs: Sequence[RunRecord]) -> pd.DataFrame:
+    if not frames:
+        return pd.DataFrame(columns=[*columns(find_task(task).row), "key"])
+    trials = pd.concat(frames, ignore_index=True)
+    known = {run.folder.name: run.known for run in runs}
+    names = {"map": "map", find_task(task).groups[0]: "method"}
+    return trials.assign(
+        **{
+            column: trials["key"].map({key: getattr(each, name) for key, each in known.items()})
+            for column, name in names.items()
+        }
+    )
 
 
 def _newest(runs: Iterable[RunRecord]) -> tuple[list[RunRecord], list[tuple[RunRecord, str]]]:

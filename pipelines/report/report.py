@@ -2,7 +2,7 @@
 
 import os
 import platform
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 from types import ModuleType
@@ -64,20 +64,19 @@ def _runs_page(
 ) -> tuple[list[tuple[str, bytes]], list[Skipped]]:
     """Make the page of the runs, with a link to the benchmarks' and what was left out of that."""
     runs = find_runs(outputs)
-    trials, unusable = read_trials(runs)
+    trials, unusable, used = read_trials(runs)
     count = sum(map(len, trials.values()))
     first = f"; {unusable[0].run}: {unusable[0].reason}" if unusable else ""
     require(count > 0, outputs, f"{len(runs)} runs of which none can be used"
             f"{first}", "a finished run")  # fmt: skip
     skipped = skipped + unusable
     frames = list(trials.values())
-    runs = _runs_of(frames, runs)
     parts = []
     modules = find_sections()
     for module in tqdm(modules, "sections", disable=None):
         for task in [task for task in trials if module.TASK in (ALL, task)]:
             mine = _wanted(module, modules, task, trials[task])
-            part = _part(module, task, mine, runs)
+            part = _part(module, task, mine, used)
             if part is not None:
                 parts.append(part)
                 skipped += [Skipped(*entry) for entry in part.section.skipped]
@@ -87,12 +86,12 @@ def _runs_page(
         parts=parts,
         bench=bench,
         trials=count,
-        runs=runs,
+        runs=used,
         reconstructed=any((frame["map_source"] == "reconstructed").any() for frame in frames),
         skipped=skipped,
-        versions=_versions(runs),
+        versions=_versions(used),
         machine=_machine(),
-        made=max(run.date for run in runs)[:16].replace("T", " "),
+        made=max(run.date for run in used)[:16].replace("T", " "),
     )
     files = [file for part in parts for file in files_of(part.section)]
     return [*files, ("index.html", page.encode())], skipped
@@ -110,9 +109,9 @@ def _wanted(
     return trials[trials["experiment"] == module.EXPERIMENT]
 
 
-def _runs_of(trials: Iterable[pd.DataFrame], runs: Sequence[RunRecord]) -> list[RunRecord]:
-    """Give the runs that the trials come from."""
-    used = {key for frame in trials for key in frame["key"]}
+def _runs_of(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> list[RunRecord]:
+    """Give the runs that trials come from."""
+    used = set(trials["key"])
     return [run for run in runs if run.folder.name in used]
 
 
@@ -120,7 +119,7 @@ def _part(
     module: ModuleType, task: str, trials: pd.DataFrame, runs: Sequence[RunRecord]
 ) -> Part | None:
     """Ask a module for its section; None where it has nothing to show."""
-    runs = _runs_of([trials], runs)
+    runs = _runs_of(trials, runs)
     section = module.section(trials, runs) if len(trials) else None
     if section is None:
         return None

@@ -11,7 +11,7 @@ from gapath.store.records import RunRecord
 _OWN: Settings = {"corner_cutting": "no_diagonals"}
 """What the experiment itself sets, whichever planner it tries."""
 
-_FORM = "stop_when_feasible"
+_FORM = "planner.stop_when_feasible"
 
 
 def other_changes(run: RunRecord) -> Settings:
@@ -68,7 +68,7 @@ def with_form(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> pd.DataFrame:
         {
             "preset": [run.known.preset for run in runs],
             "planner": [planner_of(run) for run in runs],
-            "short": [bool(run.settings.get(f"planner.{_FORM}", False)) for run in runs],
+            "short": [bool(run.settings.get(_FORM, False)) for run in runs],
         },
         index=keys,
     )

@@ -80,7 +80,8 @@ def swept_settings(run: RunRecord) -> dict[str, float] | None:
         The values of `SWEPT`; None if its planner is none of the paper's, or differs from its
         YAML in something else as well.
     """
-    if run.known.preset not in PLANNERS or not set(other_changes(run)) <= set(SWEPT):
+    swept = {f"planner.{name}" for name in SWEPT}
+    if run.known.preset not in PLANNERS or not set(other_changes(run)) <= swept:
         return None
     return {name: float(str(run.settings[f"planner.{name}"])) for name in SWEPT}
 

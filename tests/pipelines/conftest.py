@@ -42,7 +42,8 @@ def manifest_of(method: Method, task: str, place: tuple[str, str], **known: Any)
     """Make a manifest without files, of a run in the folder <experiment>/<key>."""
     experiment, key = place
     values = {
-        "map": "kg18_test1", "map_instance": 0, "map_digest": "0", "seed": 0, "trials": 1, **known,
+        "map": "kg18_test1", "map_instance": 0, "map_digest": "0", "start": "(0, 0)",
+        "target": "(9, 9)", "map_inputs": {}, "method_inputs": {}, "seed": 0, "trials": 1, **known,
     }  # fmt: skip
     tried = (experiment, values["map"], values["map_instance"], method.name, values["seed"])
     return Manifest(
@@ -155,7 +156,7 @@ def make_drive_run() -> Callable[..., Path]:
             method, "drive", (experiment, folder.name), map=map_name, map_instance=instance,
             map_digest=grid.digest, trials=n,
         )  # fmt: skip
-        write_run(folder, drives, drive_settings(preset), manifest, DATE)
+        write_run(folder, drives, drive_settings(preset, changes), manifest, DATE)
         return folder
 
     return make
@@ -172,7 +173,10 @@ def drive_outputs(
             make_drive_run(folder, "drives", name, navigator, log=True)
             for instance in range(3):
                 make_drive_run(folder, "drive_classes", name, navigator, instance=instance)
-    varied = {"kg18": ({}, {"sensor.range": 8}, {"sensor.range": 10}), "kg18_astar": ({},)}
+    varied = {
+        "kg18": ({}, {"drive.sensor.range": 8}, {"drive.sensor.range": 10}),
+        "kg18_astar": ({},),
+    }
     for preset, all_changes in varied.items():
         for changes in all_changes:
             for instance in range(3):

@@ -138,14 +138,13 @@ def make_drives(grid: GridMap, navigator: str, experiment: str, n: int) -> pd.Da
 
 def plan_settings(preset: str, changes: Mapping[str, Any] = NOTHING) -> dict[str, Any]:
     values = flatten({"planner": expanded(yaml_values("planner", preset))})
-    changed = {f"planner.{name}": value for name, value in changes.items()}
-    return {"task": "plan", **values, **changed}
+    return {"task": "plan", **values, **changes}
 
 
-def drive_settings(preset: str) -> dict[str, Any]:
+def drive_settings(preset: str, changes: Mapping[str, Any] = NOTHING) -> dict[str, Any]:
     plain = yaml.safe_load((files("gapath.conf") / "config.yaml").read_text("utf-8"))
     own = {"task": "drive", "navigator": expanded(yaml_values("navigator", preset))}
-    return flatten(own | {"drive": plain["drive"]})
+    return {**flatten(own | {"drive": plain["drive"]}), **changes}
 
 
 def make_calls(i: int, step: int, row: Any) -> Iterator[Called]:

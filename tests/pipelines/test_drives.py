@@ -56,7 +56,7 @@ def drives_of(**columns):
 def test_plans_and_drives_do_not_mix(tmp_path, make_run, make_drive_run):
     make_run(tmp_path, "mine", "kg18_test1", "ga1", n=3, log=False)
     make_drive_run(tmp_path, "mine", "kg18_map1", "kg18", n=4)
-    trials, skipped = collect(tmp_path)
+    trials, skipped, _ = collect(tmp_path)
     plans, drives = trials["plan"], trials["drive"]
     assert (len(plans), len(drives), skipped) == (3, 4, [])
     assert "navigator" not in plans
@@ -247,13 +247,13 @@ def test_classes_without_a_failure_have_no_second_table():
     [
         ("kg18", {}, {}),
         ("kg18_fast", {}, {"Least epochs, C": "3"}),
-        ("kg18", {"sensor.range": 8}, {"Sensor range, layers": "8"}),
-        ("kg18", {"sensor.occlusion": True}, {"Obstacles hide what lies behind": "yes"}),
-        ("kg18", {"explore.sampling": "span", "replan[0].sampling": "span",
-                  "replan[3].sampling": "span"}, {"Way points per": "span"}),
-        ("kg18_astar", {"return_penalty": 3.0},
+        ("kg18", {"drive.sensor.range": 8}, {"Sensor range, layers": "8"}),
+        ("kg18", {"drive.sensor.occlusion": True}, {"Obstacles hide what lies behind": "yes"}),
+        ("kg18", {"navigator.explore.sampling": "span", "navigator.replan[0].sampling": "span",
+                  "navigator.replan[3].sampling": "span"}, {"Way points per": "span"}),
+        ("kg18_astar", {"navigator.return_penalty": 3.0},
          {"Last planner, C": "A*", "Penalty on the way back, A": "3.0"}),
-        ("kg18", {"step_limit": 50}, {"step_limit": "50"}),
+        ("kg18", {"drive.step_limit": 50}, {"drive.step_limit": "50"}),
         ("dstar_lite", {}, {"Navigator": "D* Lite"}),
     ],
 )  # fmt: skip

@@ -69,7 +69,7 @@ def outputs(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def plans(outputs):
-    trials, skipped = collect(outputs)
+    trials, skipped, _ = collect(outputs)
     plans = trials["plan"]
     assert not skipped
     return plans

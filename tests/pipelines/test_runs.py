@@ -14,7 +14,7 @@ from .conftest import sign, write_status
 
 
 def plans(folder):
-    trials, skipped = collect(folder)
+    trials, skipped, _ = collect(folder)
     return trials["plan"], skipped
 
 

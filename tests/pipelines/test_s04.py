@@ -33,8 +33,11 @@ PERCENT = {  # as the paper prints them, by search space
 }  # fmt: skip
 
 
-def tried(preset, **changes):
+def tried(preset, **given):
     """Make what is known of a run; its key says what it tries."""
+    changes = {f"planner.{name}": value for name, value in given.items()}
+    if "corner_cutting" in given:
+        changes["corner_cutting"] = changes.pop("planner.corner_cutting")
     return record_of(preset, f"{preset} {changes}", changes=changes)
 
 
@@ -127,7 +130,7 @@ def test_a_path_that_was_found_and_lost_is_counted():
 
 def test_what_the_experiment_sets_itself_is_no_other_setting():
     run = tried("sedighi", corner_cutting="no_diagonals", stop_when_feasible=True, population=50)
-    assert other_changes(run) == {"population": 50}
+    assert other_changes(run) == {"planner.population": 50}
     assert planner_of(run) == "sedighi[population=50]"
     other = tried("sedighi", corner_cutting="forbid")  # not what it sets
     assert other_changes(other) == {"corner_cutting": "forbid"}

@@ -76,15 +76,16 @@ def test_other_settings_maps_and_code_are_other_runs(monkeypatch):
     grid, other = generate("kg18_test1", 0), generate("kg18_test1", 1)
     problem = Problem(grid, grid.start, grid.target)
     found = {
-        keys.run_key({"a": 1}, "ga1", problem),
-        keys.run_key({"a": 2}, "ga1", problem),
-        keys.run_key({"a": 1}, "ga2", problem),
-        keys.run_key({"a": 1}, "ga1", Problem(other, grid.start, grid.target)),
-        keys.run_key({"a": 1}, "ga1", Problem(grid, grid.start, (97, 24))),
+        keys.run_key({"a": 1}, problem, {}),
+        keys.run_key({"a": 2}, problem, {}),
+        keys.run_key({"a": 1}, problem, {"a/k.map": "1"}),
+        keys.run_key({"a": 1}, problem, {"a/k.map": "2"}),
+        keys.run_key({"a": 1}, Problem(other, grid.start, grid.target), {}),
+        keys.run_key({"a": 1}, Problem(grid, grid.start, (97, 24)), {}),
     }
     monkeypatch.setattr(keys, "code_hash", lambda: "other")
-    found.add(keys.run_key({"a": 1}, "ga1", problem))
-    assert len(found) == 6
+    found.add(keys.run_key({"a": 1}, problem, {}))
+    assert len(found) == 7
 
 
 def test_the_same_setting_with_other_code_or_more_trials_is_the_same_setting(monkeypatch):
@@ -94,10 +95,10 @@ def test_the_same_setting_with_other_code_or_more_trials_is_the_same_setting(mon
     def settings(trials, recorder):
         return flatten({"seed": 1, "trials": trials, "recorder": {recorder: {"kind": recorder}}})
 
-    few = keys.setting_hash(settings(3, "mcap"), "ga1", problem)
+    few = keys.setting_hash(settings(3, "mcap"), problem, {})
     monkeypatch.setattr(keys, "code_hash", lambda: "other")
-    assert keys.setting_hash(settings(9, "none"), "ga1", problem) == few
-    assert keys.setting_hash({"seed": 2}, "ga1", problem) != few
+    assert keys.setting_hash(settings(9, "none"), problem, {}) == few
+    assert keys.setting_hash({"seed": 2}, problem, {}) != few
 
 
 def test_a_killed_run_leaves_nothing_that_looks_whole(tmp_path):

@@ -42,6 +42,15 @@ def test_rows_come_back(drawn):
     assert names == ["string", "uint64", "int64", "bool", "double"]
 
 
+def test_what_all_rows_share_stands_in_columns_of_its_type():
+    shared = {"map.start": "[0, 1]", "population": 40, "rate": 0.5, "stop": True, "limit": None}
+    rows = [Row("", 0, 0, True, 1.0).__dict__] * 3
+    table = pq.read_table(io.BytesIO(parquet(COLUMNS, rows, shared)))
+    assert table.select(list(shared)).to_pylist() == [shared] * 3
+    names = [str(table.schema.field(name).type) for name in shared]
+    assert names == ["string", "int64", "double", "bool", "null"]
+
+
 def test_nan_comes_back():
     table = pq.read_table(io.BytesIO(parquet(COLUMNS, [Row("", 0, 0, True, math.nan).__dict__])))
     assert math.isnan(table.column("value")[0].as_py())

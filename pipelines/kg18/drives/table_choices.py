@@ -19,13 +19,13 @@ EXPERIMENT = "drive_choices"
 ORDER = 80
 
 _DECISIONS = {
-    "sensor.range": "Sensor range, layers",
-    "sensor.occlusion": "Obstacles hide what lies behind",
+    "drive.sensor.range": "Sensor range, layers",
+    "drive.sensor.occlusion": "Obstacles hide what lies behind",
     "corner_cutting": "Corner cutting",
-    "explore_interval": "B's interval, fields",
-    "return_penalty": "Penalty on the way back, A",
-    "replan.min_epochs": "Least epochs, C",
-    **{f"{part}.sampling": "Way points per" for part in ("retreat", "explore", "replan")},
+    "navigator.explore_interval": "B's interval, fields",
+    "navigator.return_penalty": "Penalty on the way back, A",
+    "navigator.replan.min_epochs": "Least epochs, C",
+    **{f"navigator.{part}.sampling": "Way points per" for part in ("retreat", "explore", "replan")},
 }
 """What people read for a setting; one of another name is shown by that."""
 

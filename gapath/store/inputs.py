@@ -1,0 +1,98 @@
+"""Which files a run reads: what they hold is part of its key.
+
+Python itself tells of every file that is opened, so that no reader, planner or library can
+forget to.
+"""
+
+import hashlib
+import os
+import sys
+import sysconfig
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from functools import lru_cache
+from importlib.machinery import all_suffixes
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, TypeAlias
+
+from gapath.discovery import conf_packages, other_folders
+from gapath.kernels.jit import cache_root
+
+Inputs: TypeAlias = Mapping[str, str]
+"""The files that a run reads: path, as it was opened -> SHA-256 of the content."""
+
+_SYSTEM = ("/proc", "/sys", "/dev", "/etc", "/run")
+
+_opened: list[list[str]] = []
+"""The paths that were opened for reading, for each `watched` that is under way."""
+
+
+@contextmanager
+def watched() -> Iterator[dict[str, str]]:
+    """Note the files that are read meanwhile.
+
+    Left out are those that are no input: all code, files of Python, of libraries, of gapath but
+    for its maps, of packages that add components (those are in the key anyway), of the cache of
+    kernels, and of the system.
+
+    Yields
+    ------
+    dict of str to str
+        `Inputs`, filled when the context ends.
+    """
+    _listen()
+    paths: list[str] = []
+    _opened.append(paths)
+    found: dict[str, str] = {}
+    try:
+        yield found
+    finally:
+        _opened.pop()
+    for path in dict.fromkeys(paths):
+        if _is_input(Path(path).resolve()):
+            found[path] = hashlib.sha256(Path(path).read_bytes()).hexdigest()
+
+
+def contents(inputs: Inputs) -> list[str]:
+    """Give names and hashes of files for a key: it does not matter in which folder they lie."""
+    return sorted(f"{Path(path).name} {digest}" for path, digest in inputs.items())
+
+
+@lru_cache
+def _listen() -> None:
+    sys.addaudithook(_note)
+
+
+def _note(event: str, arguments: tuple[Any, ...]) -> None:
+    if event != "open" or not _opened:
+        return
+    path, _, flags = arguments
+    reading = flags & (os.O_WRONLY | os.O_RDWR) == 0
+    if reading and isinstance(path, str | bytes):  # else it is open already
+        for paths in _opened:
+            paths.append(os.fsdecode(path))
+
+
+def _is_input(file: Path) -> bool:
+    if not file.is_file() or file.name.endswith(tuple(all_suffixes())):
+        return False
+    if file.is_relative_to(_folder("gapath.maps")):  # which lies among the libraries, or not
+        return True
+    return not any(file.is_relative_to(place) for place in _no_inputs())
+
+
+@lru_cache
+def _no_inputs() -> list[Path]:
+    library = sysconfig.get_paths()
+    places = [library[name] for name in ("stdlib", "platstdlib", "purelib", "platlib")]
+    places += [str(Path(os.__file__).parent), *_SYSTEM]  # the first: a virtual environment's base
+    own = [_folder(package) for package in ("gapath", "gapath.pipelines", *conf_packages())]
+    own += other_folders().values()
+    with suppress(RuntimeError):
+        own.append(cache_root())
+    return [Path(place).resolve() for place in places] + [place.resolve() for place in own]
+
+
+def _folder(package: str) -> Path:
+    return Path(str(files(package))).resolve()
