@@ -72,6 +72,9 @@ class GridMap:
         Side of a field in metres.
     origin : (x, y, yaw)
         Pose of the lower left corner of the map, in metres and radians.
+    published_length : float
+        Octile length of a shortest path from start to target, in fields, as the map's author
+        gives it; NaN if nobody does.
 
     Raises
     ------
@@ -88,6 +91,7 @@ class GridMap:
     source: str = "array"
     resolution: float = 1.0
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    published_length: float = math.nan
 
     def __post_init__(self) -> None:
         where = f"map {self.name}"

@@ -276,6 +276,10 @@ class Planner(Protocol):
     def exact(self) -> bool:
         """True if it finds a path wherever there is one."""
 
+    @property
+    def minimises(self) -> str:
+        """What it seeks the least of: "weights" (KG18 eq. (5)), "length" (octile) or a metric."""
+
     def plan(self, problem: Query, stream: Stream) -> Plan:
         """Plan a path; every random number comes from the stream.
 

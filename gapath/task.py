@@ -13,6 +13,7 @@ from typing import Any, ClassVar, NamedTuple, Protocol, Self, get_type_hints, ru
 from gapath.discovery import kinds, load
 from gapath.errors import require
 from gapath.events import Event, RunStarted
+from gapath.planning.path import octile_length
 from gapath.problem import Plan, Problem
 
 Measure = Callable[[Problem, Plan], float]
@@ -34,7 +35,9 @@ class Batch(NamedTuple):
 class Row:
     """What every row of ``trials.parquet`` has; failures are rows too.
 
-    `map_digest` is the SHA-256 of what a planner sees of the map; `metrics` holds the columns
+    `map_digest` is the SHA-256 of what a planner sees of the map; `published_length` is the octile
+    length that the map's author gives, `length_ratio` that of a path that was found over it, both
+    NaN where there is none; `metrics` holds the columns
     of `gapath.metrics` by name: NaN (0 for a count) where there is no path.
     """
 
@@ -50,6 +53,8 @@ class Row:
     corner_cutting: str
     seed: int
     trial: int
+    published_length: float
+    length_ratio: float
     metrics: Mapping[str, float] = field(repr=False)
 
     def values(self) -> dict[str, Any]:
@@ -90,8 +95,15 @@ def head(batch: Batch, trial: int, plan: Plan) -> dict[str, Any]:
         "corner_cutting": problem.corner_cutting.name.lower(),
         "seed": batch.seed,
         "trial": trial,
+        "published_length": grid.published_length,
+        "length_ratio": _length_ratio(plan, grid.published_length),
         "metrics": measured(problem, plan),
     }
+
+
+def _length_ratio(plan: Plan, published: float) -> float:
+    known = plan.feasible and published > 0  # not NaN
+    return octile_length(plan.path) / published if known else math.nan
 
 
 @lru_cache

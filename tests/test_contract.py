@@ -98,6 +98,7 @@ def test_exact_planners_find_every_path(name):
 def test_a_planner_that_gives_up_breaks_the_contract():
     class Quitter:
         exact = False
+        minimises = "weights"
 
         def plan(self, problem, stream):
             return Plan(PlanStatus.NOT_FOUND)

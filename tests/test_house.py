@@ -20,6 +20,9 @@ ARGUMENTS = 9
 SAME_SIGNATURE = {("benchmarks/rivals/textbook.py", "evolve")}
 """The rival of a kernel takes what the kernel takes."""
 
+WITH_BRACKETS = ("pipelines/papers/names.py", "gapath/components.py")
+"""The first writes names for people, what differs behind them; the second reads those of fields."""
+
 NAMED_OTHERWISE = {("gapath/__init__.py", "plan")}
 """The library's function, not the task."""
 
@@ -139,6 +142,21 @@ def test_no_function_takes_a_crowd_of_arguments():
 
 def test_no_code_asks_which_task_it_is():
     none(asked_for_tasks(ROOT), "a task is asked for by its name: let it say what differs")
+
+
+def taken_apart(root):
+    """Find code that takes a name apart at its bracket: it is for people, settings are data."""
+    for path, text in modules(root, "gapath", "pipelines", "benchmarks"):
+        if path in WITH_BRACKETS:
+            continue
+        for node in ast.walk(ast.parse(text)):
+            split = isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)
+            if split and any(isinstance(a, ast.Constant) and a.value == "[" for a in node.args):
+                yield f"{path}:{node.lineno}"
+
+
+def test_no_code_takes_a_name_apart():
+    none(list(taken_apart(ROOT)), "a name is for people: ask the run's settings")
 
 
 def test_every_room_says_what_question_it_answers():

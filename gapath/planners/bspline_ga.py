@@ -94,6 +94,7 @@ class Planner:
     """The kernels that plan; no setting, as all of them plan the same."""
 
     exact = False
+    minimises = "weights"
 
     def __post_init__(self) -> None:
         check = Checks(self, "planner")

@@ -37,6 +37,11 @@ class Planner:
             '"weights" or "length"',
         )
 
+    @property
+    def minimises(self) -> str:
+        """As its setting says."""
+        return self.minimise
+
     def plan(self, problem: Query, stream: Stream) -> Plan:
         """Find a path of least cost; the stream is not used."""
         return shortest_path(problem, self.informed, by_length=self.minimise == "length")

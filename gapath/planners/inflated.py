@@ -31,6 +31,11 @@ class Planner(Clearance):
 
     exact = False
 
+    @property
+    def minimises(self) -> str:
+        """What its planner does."""
+        return str(self.planner.minimises)
+
     def check(self, problem: Query) -> None:
         """Refuse what either part refuses.
 

@@ -64,6 +64,7 @@ class Planner:
     pad_to_square: bool
 
     exact = False
+    minimises = "weights"
 
     def __post_init__(self) -> None:
         check = Checks(self, "planner")

@@ -65,6 +65,7 @@ class Planner(Surveyor):
     crossover_probability: float
 
     exact = False
+    minimises = "line_length"
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -27,6 +27,7 @@ class Planner(Surveyor):
     informed: bool
 
     exact = False
+    minimises = "line_length"
 
     def plan(self, problem: Query, stream: Stream) -> Plan:
         """Make the graph and search it; the stream is not used.

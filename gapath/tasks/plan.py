@@ -11,6 +11,7 @@ from typing import Any, ClassVar, Self, cast
 from gapath.components import build
 from gapath.errors import require
 from gapath.events import Event, Evolved, RunStarted, Surveyed, TrialFinished, TrialStarted
+from gapath.planning.path import octile_length
 from gapath.planning.shortest_path import shortest_path
 from gapath.planning.simulation import TimedPlan, plan_trials
 from gapath.problem import Accelerated, Particular, Plan, Planner, Problem
@@ -21,9 +22,11 @@ from gapath.task import Batch, Row, Trial, head
 class PlanRow(Row):
     """A row of ``trials.parquet``: a planning query; failures are rows too.
 
-    `cost` of a failure is the planner's best fitness, obstacles counted as VLN, `obstacles` how
-    many there are on its best path; `stage_times_s` gives the wall time of each stage of a planner
-    that has stages, as JSON.
+    `optimality_ratio` is how much the path has of what the planner minimises over the least there
+    is: of the weights, or of the octile length; NaN where the least is not known. `cost` of a
+    failure is the planner's best fitness, obstacles counted as VLN, `obstacles` how many there are
+    on its best path; `stage_times_s` gives the wall time of each stage of a planner that has
+    stages, as JSON.
     """
 
     planner: str
@@ -32,6 +35,7 @@ class PlanRow(Row):
     cost: float
     obstacles: int
     optimal_cost: float
+    minimises: str
     optimality_ratio: float
     epochs: int
     evaluations: int
@@ -110,11 +114,12 @@ class Task:
         Trial
             In order.
         """
+        least = _least(batch.problem, optimum, self.planner.minimises)
         answers = plan_trials(
             batch.problem, optimum, self.planner, batch.seed, batch.trials, batch.threads
         )
         for answer in answers:
-            row = _row(batch, answer, optimum)
+            row = _row(batch, answer, optimum, self.planner.minimises, least)
             events = partial(trial_events, answer, batch.seed)
             yield Trial(row, row.feasible, duration(answer.plan), events)
 
@@ -137,10 +142,13 @@ class Task:
             lines["median time"] = _median_time(rows)
         if found:
             cost = statistics.median(row.cost for row in found)
-            epochs = statistics.median(row.epochs for row in found)
-            lines["median cost"] = f"{cost:g}, of paths found"
-            if epochs:
-                lines["median epochs"] = f"{epochs:g}, of paths found"
+            lines["median cost"] = f"{cost:g}, if found"
+        if any(row.epochs for row in rows):
+            every = statistics.median(row.epochs for row in rows)
+            some = (
+                f"; {statistics.median(row.epochs for row in found):g}, if found" if found else ""
+            )
+            lines["median epochs"] = f"{every:g}{some}"
         return lines
 
     def line(self, rows: list[PlanRow]) -> str:
@@ -213,9 +221,21 @@ def duration(plan: Plan) -> int:
     return max(plan.epochs, 1)
 
 
-def _row(batch: Batch, answer: TimedPlan, optimum: Plan) -> PlanRow:
+def _least(problem: Problem, optimum: Plan, quantity: str) -> float:
+    """Give the least of what a planner minimises; NaN if there is no path or nobody knows."""
+    if optimum.feasible and quantity == "length":
+        optimum = shortest_path(problem, by_length=True)
+    return _amount(optimum, quantity)
+
+
+def _amount(plan: Plan, quantity: str) -> float:
+    if not plan.feasible:
+        return math.nan
+    return {"weights": plan.cost, "length": octile_length(plan.path)}.get(quantity, math.nan)
+
+
+def _row(batch: Batch, answer: TimedPlan, optimum: Plan, quantity: str, least: float) -> PlanRow:
     plan = answer.plan
-    ratio = plan.cost / optimum.cost if plan.feasible and optimum.cost else math.nan
     return PlanRow(
         **head(batch, answer.number, plan),
         planner=batch.method,
@@ -224,7 +244,8 @@ def _row(batch: Batch, answer: TimedPlan, optimum: Plan) -> PlanRow:
         cost=plan.cost,
         obstacles=plan.obstacles,
         optimal_cost=optimum.cost,
-        optimality_ratio=ratio,
+        minimises=quantity,
+        optimality_ratio=_amount(plan, quantity) / least if least else math.nan,
         epochs=plan.epochs,
         evaluations=plan.evaluations,
         expansions=plan.expansions,

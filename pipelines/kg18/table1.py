@@ -18,7 +18,7 @@ ORDER = 10
 _EFFORT: dict[str, tuple[str, Callable[[float], float]]] = {
     "evaluations": ("Evaluations", lambda count: count),
     "seconds": ("Time, ms", lambda seconds: 1000 * seconds),
-    "optimality_ratio": ("Cost above optimal, %", lambda ratio: 100 * (ratio - 1)),
+    "optimality_ratio": ("Above optimal, %", lambda ratio: 100 * (ratio - 1)),
 }
 """The column of each quantity, and its number there."""
 

@@ -58,10 +58,14 @@ def summarise_class(trials: pd.DataFrame) -> dict[str, float]:
     Returns
     -------
     dict
-        What `over_instances` gives, success being the rate; quartiles of the epochs.
+        What `over_instances` gives, success being the rate; quartiles of epochs and found_epochs.
     """
     row = summarise(trials)
-    epochs = {name: row[name] for name in ("epochs_median", "epochs_q1", "epochs_q3")}
+    epochs = {
+        f"{name}_{key}": row[f"{name}_{key}"]
+        for name in ("epochs", "found_epochs")
+        for key in ("median", "q1", "q3")
+    }
     return over_instances(trials, "feasible", "success") | epochs
 
 
@@ -78,7 +82,10 @@ def _table(rows: pd.DataFrame) -> Table:
             ),
             "Always solved": number(row["always"]),
             "Never solved": number(row["never"]),
-            "Epochs": middle(row["epochs_median"], row["epochs_q1"], row["epochs_q3"]),
+            **{
+                title: middle(*(row[f"{name}_{key}"] for key in ("median", "q1", "q3")))
+                for title, name in (("Epochs", "epochs"), ("Epochs, if found", "found_epochs"))
+            },
         }
         for _, row in rows.iterrows()
     ]
@@ -86,7 +93,8 @@ def _table(rows: pd.DataFrame) -> Table:
         "classes",
         "Success over the instances of each class of KG18's known maps: the mean of the instances' "
         "success rates with its 95 % interval over instances; how many instances were solved in "
-        "all trials or in none; median (quartiles) of the epochs of all trials.",
+        "all trials or in none; median (quartiles) of the epochs of all trials, and of "
+        "those that found a path.",
         rows,
         pd.DataFrame(shown),
     )

@@ -44,7 +44,7 @@ def summarise(trials: pd.DataFrame) -> dict[str, float]:
     """Summarise trials of one setting, failures included.
 
     Epochs, evaluations and seconds are those of all trials: a failed one counts with what
-    it spent. The optimality ratio exists only where a path does; epochs, evaluations and the
+    it spent. The ratios exist only where a path does; epochs, evaluations and the
     interval of success only for a planner that draws random numbers. Else they are missing.
 
     Parameters
@@ -56,8 +56,8 @@ def summarise(trials: pd.DataFrame) -> dict[str, float]:
     -------
     dict
         n, found, success and its interval; for epochs, found_epochs (those of trials that found
-        a path), evaluations, seconds and optimality_ratio the fields of `Spread`; expected
-        evaluations and seconds to a path.
+        a path), evaluations, seconds, optimality_ratio and length_ratio the fields of `Spread`;
+        expected evaluations and seconds to a path.
     """
     n, found = len(trials), int(trials["feasible"].sum())
     rate = found / n if n else np.nan
@@ -70,7 +70,8 @@ def summarise(trials: pd.DataFrame) -> dict[str, float]:
     row |= {"success": rate, "success_low": low, "success_high": high}
     spent = spent.assign(seconds=trials["plan_time_s"])
     spent = spent.assign(found_epochs=spent["epochs"].where(trials["feasible"]))
-    for name, values in (*spent.items(), ("optimality_ratio", trials["optimality_ratio"])):
+    ratios = trials[["optimality_ratio", "length_ratio"]]
+    for name, values in (*spent.items(), *ratios.items()):
         row |= {f"{name}_{key}": value for key, value in spread(values)._asdict().items()}
     for name in ("evaluations", "seconds"):
         row[f"ert_{name}"] = expected_running_time(spent[name].to_numpy(), trials["feasible"])

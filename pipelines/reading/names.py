@@ -45,7 +45,7 @@ def told_apart(runs: Sequence[RunRecord]) -> list[RunRecord]:
         runs,
         lambda run: (run.known.map, run.known.map_instance),
         lambda run: (run.known.map_digest, run.known.start, run.known.target),
-        (_map, _ends, lambda run: _hashes(run.known.map_inputs), _digest),
+        (_map, _ends, _digest),
     )
     return [_renamed(*each) for each in zip(runs, methods, maps, strict=True)]
 

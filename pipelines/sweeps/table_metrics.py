@@ -45,12 +45,16 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
         spread = {f"{name}_{key}": levels[key][name] for name in modules for key in _QUARTILES}
         return {"n": len(group), "succeeded": len(paths), **spread}
 
-    rows = summarise_by(trials, ["experiment", "map", "map_source", method], measure)
+    by = ["experiment", "map", "map_source", method]
+    rows = summarise_by(trials, by, measure)
+    instances = trials.groupby(by)["map_instance"].nunique()
+    rows.insert(len(by), "instances", [instances[tuple(row)] for row in rows[by].to_numpy()])
     shown = [
         {
             "Experiment": row["experiment"],
             "Map": label(row["map"], row["map_source"]),
             method.capitalize(): label(row[method]),
+            "Instances": number(row["instances"]),
             "Trials": number(row["n"]),
             task.success.capitalize(): number(row["succeeded"]),
             **{

@@ -67,7 +67,9 @@ def make_trials(grid: GridMap, planner: str, experiment: str, seed: int, n: int)
         "start": str(grid.start), "target": str(grid.target),
         "corner_cutting": "allow", "planner": planner, "seed": seed, "trial": np.arange(n),
         "status": np.where(feasible, "found", "not_found"), "feasible": feasible, "cost": cost,
-        "optimal_cost": 11.0, "optimality_ratio": np.where(feasible, cost / 11.0, np.nan),
+        "optimal_cost": 11.0, "minimises": "weights",
+        "optimality_ratio": np.where(feasible, cost / 11.0, np.nan),
+        "published_length": np.nan, "length_ratio": np.nan,
         "obstacles": np.where(feasible, 0, 2), "epochs": epochs,
         "evaluations": epochs * 40, "expansions": 0 if is_ga else 200,
         "plan_time_s": 1e-5 + 4e-6 * epochs, "stage_times_s": "{}", **METRICS,
@@ -123,6 +125,7 @@ def make_drives(grid: GridMap, navigator: str, experiment: str, n: int) -> pd.Da
     return pd.DataFrame({
         "experiment": experiment, "map": grid.name, "map_instance": grid.instance,
         "map_source": grid.source, "map_digest": grid.digest,
+        "published_length": np.nan, "length_ratio": np.nan,
         "width": grid.cols, "height": grid.rows,
         "start": str(grid.start), "target": str(grid.target),
         "corner_cutting": "allow", "navigator": navigator, "seed": 0, "trial": np.arange(n),

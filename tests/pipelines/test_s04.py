@@ -45,8 +45,8 @@ def trials(run, found, of, **columns):
     frame = pd.DataFrame({"feasible": [i < found for i in range(of)], "trial": range(of)})
     defaults = {
         "map": "s04_sp07", "map_source": "reconstructed", "planner": run.known.method, "seed": 0,
-        "plan_time_s": 0.5, "optimality_ratio": math.nan, "evaluations": 200, "epochs": 4,
-        "key": run.folder.name,
+        "plan_time_s": 0.5, "optimality_ratio": math.nan, "length_ratio": math.nan,
+        "evaluations": 200, "epochs": 4, "key": run.folder.name,
     }  # fmt: skip
     return frame.assign(**defaults | columns)
 

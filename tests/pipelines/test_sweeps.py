@@ -61,10 +61,10 @@ def test_metrics_worked_by_hand():
     assert [row[f"turns_{key}"] for key in ("q1", "median", "q3")] == [2, 4, 8]
     assert [row[f"length_{key}"] for key in ("q1", "median", "q3")] == [20, 30, 40]
     (shown,) = made_table.shown.to_dict("records")
-    assert list(shown) == ["Experiment", "Map", "Planner", "Trials", "Feasible"] + [
+    assert list(shown) == ["Experiment", "Map", "Planner", "Instances", "Trials", "Feasible"] + [
         load("metric", name).TITLE for name in metrics()
     ]
-    assert list(shown.values())[:5] == ["mine", "Map 1 (reconstructed)", "GA 1", "6", "5"]
+    assert list(shown.values())[:6] == ["mine", "Map 1 (reconstructed)", "GA 1", "1", "6", "5"]
     assert (shown["Turns"], shown["Length, fields"]) == ("4 (2 to 8)", "30 (20 to 40)")
     assert shown["Clearance, fields"] == "1.5 (1 to 2.5)"
     assert made_table.name == "metrics_plan" and "(feasible)" in made_table.caption

@@ -18,7 +18,8 @@ def trials(**columns):
     frame = pd.DataFrame(columns)
     defaults = {
         "map": "m", "map_source": "array", "map_instance": 0, "planner": "ga1", "plan_time_s": 0.5,
-        "optimality_ratio": 1.0, "evaluations": 10, "epochs": 1, "feasible": True,
+        "optimality_ratio": 1.0, "length_ratio": math.nan, "evaluations": 10,
+        "epochs": 1, "feasible": True,
     }  # fmt: skip
     return frame.assign(**{k: v for k, v in defaults.items() if k not in frame})
 

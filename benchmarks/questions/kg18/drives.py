@@ -51,6 +51,7 @@ class Clock:
     seconds: float = 0.0
 
     exact = False
+    minimises = "weights"
 
     def plan(self, query: Situation, stream: Stream) -> Plan:
         """Plan as the planner does."""

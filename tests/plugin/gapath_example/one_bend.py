@@ -25,6 +25,7 @@ class Planner:
     tries: int
 
     exact = False
+    minimises = "weights"
 
     def __post_init__(self) -> None:
         require(1 <= self.tries <= 10**6, "planner.tries", self.tries, "an integer from 1 to 10^6")

@@ -1,0 +1,73 @@
+"""The files that a run reads, whoever opens them."""
+
+import hashlib
+import importlib
+import io
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from gapath.store.inputs import contents, watched
+
+READ = [
+    lambda path: open(path).close(),  # noqa: PTH123
+    lambda path: Path(path).read_bytes(),
+    lambda path: os.close(os.open(path, os.O_RDONLY)),
+    lambda path: np.load(path),
+    lambda path: Image.open(path).load(),
+    lambda path: io.open_code(path).close(),
+]
+
+
+@pytest.mark.parametrize("read", READ)
+def test_whoever_reads_a_file_it_is_noted(read, tmp_path):
+    path = tmp_path / "a map"
+    if read is READ[4]:
+        Image.new("L", (2, 2)).save(path, "PNG")
+    else:
+        with path.open("wb") as file:
+            np.save(file, np.zeros(3))
+    with watched() as found:
+        read(str(path))
+    assert found == {str(path): hashlib.sha256(path.read_bytes()).hexdigest()}
+
+
+def test_nothing_is_noted_but_what_is_read_meanwhile(tmp_path):
+    before, within, after, written = (tmp_path / name for name in "abcd")
+    for path in (before, within, after):
+        path.write_text("1")
+    before.read_text()
+    with watched() as outer:
+        with watched() as inner:
+            within.read_text()
+        written.write_text("2")
+    after.read_text()
+    assert list(inner) == list(outer) == [str(within)]
+
+
+def test_a_failure_to_read_is_the_readers_own_affair(tmp_path):
+    with pytest.raises(FileNotFoundError), watched():
+        (tmp_path / "none").read_text()
+
+
+def test_code_libraries_and_the_system_are_no_inputs(tmp_path, monkeypatch):
+    (tmp_path / "a_module_of_ones_own.py").write_text("x = 1")
+    monkeypatch.syspath_prepend(tmp_path)
+    with watched() as found:
+        importlib.import_module("a_module_of_ones_own")
+        Path(pytest.__file__).read_text()
+        Path(os.__file__).read_text()
+        Path(sys.modules["gapath"].__file__).read_text()
+        if Path("/proc/self/status").exists():
+            Path("/proc/self/status").read_text()
+    assert found == {}
+
+
+def test_for_a_key_it_does_not_matter_where_a_file_lies():
+    assert contents({"a/k.map": "1"}) == contents({"b/k.map": "1"})
+    assert contents({"k.map": "1"}) != contents({"k.map": "2"})
+    assert contents({"k.map": "1", "l.map": "2"}) != contents({"k.map": "2", "l.map": "1"})

@@ -1,0 +1,71 @@
+"""A run's key: the same wherever the same code lies, another for other code."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import gapath
+
+PACKAGE = Path(gapath.__file__).parent
+ROOT = PACKAGE.parent
+HASH = "from gapath.store.keys import code_hash; print(code_hash())"
+
+
+def code_hash(place):
+    """Hash the package that lies in a folder, in a process of its own."""
+    env = os.environ | {"PYTHONPATH": str(place), "PYTHONDONTWRITEBYTECODE": "1"}
+    done = subprocess.run(
+        [sys.executable, "-c", HASH], env=env, cwd=place, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip()
+
+
+@pytest.fixture(scope="module")
+def sources(tmp_path_factory):
+    """Copy a checkout to where a folder above it has a name that the package uses itself."""
+    place = tmp_path_factory.mktemp("pipelines") / "conf" / "checkout"
+    place.mkdir(parents=True)
+    for name in ("gapath", "pipelines", "conf", "maps"):
+        ignore = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(ROOT / name, place / name, symlinks=True, ignore=ignore)
+    for name in ("pyproject.toml", "README.md", "LICENSE"):
+        shutil.copy(ROOT / name, place)
+    return place
+
+
+def test_a_wheel_and_a_checkout_have_the_same_hash_wherever_they_lie(sources, tmp_path):
+    pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "install", "--quiet"]
+    options = [
+        "--no-index",
+        "--no-deps",
+        "--no-build-isolation",
+        "--target",
+        str(tmp_path / "site"),
+    ]
+    copy = shutil.copytree(sources, tmp_path / "copy", symlinks=True)  # a build writes beside it
+    done = subprocess.run([*pip, *options, str(copy)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert not (tmp_path / "site" / "gapath" / "pipelines").is_symlink()
+    assert code_hash(tmp_path / "site") == code_hash(sources) == code_hash(ROOT)
+
+
+@pytest.mark.parametrize(
+    ("name", "changes"),
+    [
+        ("planners/bspline_ga.py", True),
+        ("kernels/units.py", True),
+        ("pipelines/papers/kg18.py", False),
+    ],
+)
+def test_edited_code_is_other_code_below_any_folder(sources, name, changes):
+    before = code_hash(sources)
+    file = sources / "gapath" / name
+    text = file.read_text()
+    file.write_text(text + "# edited\n")
+    assert (code_hash(sources) != before) == changes
+    file.write_text(text)
