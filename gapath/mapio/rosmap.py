@@ -89,7 +89,7 @@ class Reader:
     start: list[int] | None
     target: list[int] | None
     free_weight: float
-    unknown: str | float | int
+    unknown: str | float
 
     def __post_init__(self) -> None:
         require(

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
-from omegaconf import OmegaConf
 from PIL import Image
 
+from gapath.components import typed
 from gapath.discovery import readers
 from gapath.errors import InputError
 from gapath.mapio.file import Reader
@@ -72,16 +72,14 @@ def test_yaml_holds_exactly_the_settings(kind):
     assert list(values) == [field.name for field in fields(reader)]
     assert list(values)[:3] == ["path", "start", "target"]
     assert all("#" in line for line in text.splitlines() if not line.startswith("kind:"))
-    schema = OmegaConf.structured(reader)
     chosen = {"path": "m", "start": [1, 2]}
-    assert isinstance(OmegaConf.to_object(OmegaConf.merge(schema, values, chosen)), reader)
+    assert isinstance(typed(reader, values | chosen, "map"), reader)
 
 
 @pytest.mark.parametrize("value", ["free", 0.25, 0, 1])
 def test_unknown_fields_take_a_word_or_a_weight(value):
-    schema = OmegaConf.structured(import_module("gapath.mapio.rosmap").Reader)
     values = {"path": "m", "start": None, "target": None, "free_weight": 0.5, "unknown": value}
-    assert OmegaConf.to_object(OmegaConf.merge(schema, values)).unknown == value
+    assert typed(import_module("gapath.mapio.rosmap").Reader, values, "map").unknown == value
 
 
 def test_public_maps():
