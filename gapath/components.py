@@ -7,7 +7,7 @@ from typing import Any, cast, get_args, get_origin, get_type_hints
 from omegaconf import OmegaConf
 from omegaconf.errors import ConfigKeyError, OmegaConfBaseException
 
-from gapath.discovery import kinds, load, yaml_values
+from gapath.discovery import kinds, load, with_setting, yaml_values
 from gapath.errors import InputError, require
 
 EXACT = 2**53
@@ -84,7 +84,16 @@ def _kind_and_settings(
     values = dict(values)
     kind = values.pop("kind", None)
     require(kind in kinds(group), f"{where}.kind", kind, f"one of {', '.join(kinds(group))}")
-    return str(kind), checked(load(group, str(kind)), expanded(values), where)
+    target = load(group, str(kind))
+    try:
+        return str(kind), checked(target, expanded(values), where)
+    except InputError as error:
+        name = error.where.removeprefix(f"{where}.")
+        others = with_setting(group, name)
+        if not others or name in (field.name for field in dataclasses.fields(target)):
+            raise
+        right = f"{error.expected}; it is a setting of {others}"
+        raise InputError(error.where, error.value, right) from None
 
 
 def expanded(value: Any) -> Any:
