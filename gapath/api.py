@@ -4,21 +4,21 @@ from pathlib import Path
 from typing import Any
 
 from gapath.components import build
-from gapath.discovery import readers, yaml_values
+from gapath.discovery import reader_of, yaml_values
 from gapath.errors import InputError, require
 from gapath.grid import Field, GridMap
 from gapath.planning.simulation import plan_once
 from gapath.problem import CornerCutting, Particular, Plan, Planner, Problem
 
 
-def load_map(path: str | Path, **settings: Any) -> GridMap:
+def load_map(path: str | Path, /, **settings: Any) -> GridMap:
     """Load a map from a file, or one of gapath's own by its name.
 
     Parameters
     ----------
     path : str or Path
         A ROS ``map_server`` YAML, a MovingAI ``.map``, an image; or a name in ``conf/map``,
-        for example "kg18_test3".
+        for example "kg18_test3", or "image" with ``path`` among the settings.
     **settings
         Settings that replace those in ``conf/map``, for example ``unknown="free"`` or
         ``instance=4``.
@@ -33,11 +33,10 @@ def load_map(path: str | Path, **settings: Any) -> GridMap:
     InputError
         If the file cannot be used, or a setting is unknown or out of range.
     """
-    ending = str(path).lower()
-    formats = [kind for suffix, kind in readers().items() if ending.endswith(suffix)]
-    if formats:
-        settings["path"] = str(path)
-    values = yaml_values("map", formats[0] if formats else str(path))
+    name = str(path)
+    if Path(path).suffix:  # a file
+        settings["path"], name = name, reader_of(name, "path")
+    values = yaml_values("map", name)
     grid: GridMap = build("map", values | settings, "map").read()
     return grid
 

@@ -1,13 +1,17 @@
 """A YAML's ``kind`` and settings become an object."""
 
 import dataclasses
-from typing import Any, get_type_hints
+from collections.abc import Callable
+from typing import Any, cast, get_args, get_origin, get_type_hints
 
-from omegaconf import DictConfig, ListConfig, OmegaConf
+from omegaconf import OmegaConf
 from omegaconf.errors import ConfigKeyError, OmegaConfBaseException
 
-from gapath.discovery import kinds, load, yaml_values
+from gapath.discovery import kinds, load, with_setting, yaml_values
 from gapath.errors import InputError, require
+
+EXACT = 2**53
+"""Below it every whole number is both an int and a float."""
 
 
 def build(group: str, values: dict[str, Any], where: str) -> Any:
@@ -32,21 +36,64 @@ def build(group: str, values: dict[str, Any], where: str) -> Any:
     InputError
         For an unknown kind, an unknown, missing or mistyped setting, or one out of range.
     """
-    values = dict(values)
-    kind = values.pop("kind", None)
-    require(kind in kinds(group), f"{where}.kind", kind, f"one of {', '.join(kinds(group))}")
-    target = load(group, str(kind))
+    kind, settings = _kind_and_settings(group, values, where)
     made = {
-        name: with_planners(value, f"{where}.{name}")
-        for name, value in checked(target, expanded(values), where).items()
+        name: _for_planners(build, value, f"{where}.{name}") for name, value in settings.items()
     }
     try:
-        return target(**made)
+        return load(group, kind)(**made)
     except InputError as error:  # a component names its group; here it may stand elsewhere
         place = error.where
         if not place.startswith(f"{where}."):
             place = place.replace(f"{group}.", f"{where}.", 1)
         raise InputError(place, error.value, error.expected) from None
+
+
+def normalised(group: str, values: dict[str, Any], where: str) -> dict[str, Any]:
+    """Give a component's settings as data, in one way: what means the same is equal.
+
+    Parameters
+    ----------
+    group : str
+        "map", "planner", "navigator" or "recorder".
+    values : dict
+        ``kind`` and the settings of that kind, however loose: "0" or 0.0 for a 0.
+    where : str
+        Where the values stand, for messages.
+
+    Returns
+    -------
+    dict
+        ``kind`` and every setting with its type, planners among them written out (`expanded`).
+
+    Raises
+    ------
+    InputError
+        For an unknown kind, or an unknown, missing or mistyped setting.
+    """
+    kind, settings = _kind_and_settings(group, values, where)
+    return {"kind": kind} | {
+        name: _for_planners(normalised, value, f"{where}.{name}")
+        for name, value in settings.items()
+    }
+
+
+def _kind_and_settings(
+    group: str, values: dict[str, Any], where: str
+) -> tuple[str, dict[str, Any]]:
+    values = dict(values)
+    kind = values.pop("kind", None)
+    require(kind in kinds(group), f"{where}.kind", kind, f"one of {', '.join(kinds(group))}")
+    target = load(group, str(kind))
+    try:
+        return str(kind), checked(target, expanded(values), where)
+    except InputError as error:
+        name = error.where.removeprefix(f"{where}.")
+        others = with_setting(group, name)
+        if not others or name in (field.name for field in dataclasses.fields(target)):
+            raise
+        right = f"{error.expected}; it is a setting of {others}"
+        raise InputError(error.where, error.value, right) from None
 
 
 def expanded(value: Any) -> Any:
@@ -79,25 +126,12 @@ def expanded(value: Any) -> Any:
     return expanded(yaml_values("planner", value["base"])) | own if "base" in value else own
 
 
-def with_planners(value: Any, where: str) -> Any:
-    """Make the planners that a component's settings describe, see `expanded`.
-
-    Parameters
-    ----------
-    value : object
-        A setting.
-    where : str
-        Where it stands, for messages.
-
-    Returns
-    -------
-    object
-        The setting, every mapping with a ``kind`` in it replaced by a planner.
-    """
+def _for_planners(make: Callable[[str, dict[str, Any], str], Any], value: Any, where: str) -> Any:
+    """Replace every mapping with a ``kind`` in a component's settings by what is made of it."""
     if isinstance(value, list):
-        return [with_planners(item, f"{where}[{i}]") for i, item in enumerate(value)]
+        return [_for_planners(make, item, f"{where}[{i}]") for i, item in enumerate(value)]
     if isinstance(value, dict) and "kind" in value:
-        return build("planner", value, where)
+        return make("planner", value, where)
     return value
 
 
@@ -107,7 +141,7 @@ def typed(target: type[Any], values: object, where: str) -> Any:
     Parameters
     ----------
     target : type
-        A dataclass without defaults.
+        A dataclass without defaults; its fields may be such dataclasses.
     values : mapping
         Its fields.
     where : str
@@ -123,21 +157,33 @@ def typed(target: type[Any], values: object, where: str) -> Any:
     InputError
         For an unknown, missing or mistyped field.
     """
-    return target(**checked(target, values, where))
+    fields, hints = checked(target, values, where), get_type_hints(target)
+    prefix = f"{where}." if where else ""
+    for name in fields:
+        if dataclasses.is_dataclass(hints[name]):
+            fields[name] = typed(cast(type[Any], hints[name]), fields[name], prefix + name)
+    return target(**fields)
 
 
 def checked(target: type[Any], values: object, where: str) -> dict[str, Any]:
-    """Check names and types of a dataclass's fields, as `typed` does, without making it."""
+    """Give what `typed` would make a dataclass of: every field, with its type, as plain data.
+
+    A whole number is an int where the field is, and a float where that is one: 1.0 and "1" are 1.
+    """
     prefix = f"{where}." if where else ""
     names = [f.name for f in dataclasses.fields(target) if f.init]
+    if not isinstance(values, dict):
+        raise InputError(where, values, f"settings: {', '.join(names)}")
     if not names:
-        loose = values if isinstance(values, dict) else {}
-        require(not loose, f"{prefix}{next(iter(loose), '')}", "an unknown name", "no settings")
+        require(not values, f"{prefix}{next(iter(values), '')}", "an unknown name", "no settings")
         return {}
     try:
         hints = get_type_hints(target)
-        schema = dataclasses.make_dataclass(target.__name__, [(n, hints[n]) for n in names])
-        merged = OmegaConf.merge(OmegaConf.structured(schema), values)
+        inner = [n for n in names if dataclasses.is_dataclass(hints[n])]
+        types = [(n, Any if n in inner else hints[n]) for n in names]
+        schema = dataclasses.make_dataclass(target.__name__, types)
+        given = {name: _whole(hints.get(name), value) for name, value in values.items()}
+        merged = OmegaConf.merge(OmegaConf.structured(schema), given)
         for name in names:
             require(not OmegaConf.is_missing(merged, name), prefix + name, "nothing", "a value")
         fields = OmegaConf.to_container(merged, resolve=True)
@@ -147,16 +193,28 @@ def checked(target: type[Any], values: object, where: str) -> dict[str, Any]:
         ) from error
     except OmegaConfBaseException as error:
         name = error.full_key or str(error.key or "")
-        raise InputError(prefix + name, _raw(values, name), _type_name(target, name)) from error
+        shown = repr(values.get(name.split(".")[0].split("[")[0]))
+        raise InputError(prefix + name, shown, _type_name(target, name)) from error
     assert isinstance(fields, dict)
-    return {name: fields[name] for name in names}
+    return {
+        name: checked(hints[name], fields[name], prefix + name) if name in inner else fields[name]
+        for name in names
+    }
 
 
-def _raw(values: object, name: str) -> object:
-    value = values.get(name.split(".")[0].split("[")[0]) if isinstance(values, dict) else values
-    if isinstance(value, DictConfig | ListConfig):
-        value = OmegaConf.to_container(value)
-    return repr(value)
+def _whole(hint: Any, value: Any) -> Any:
+    """Give a whole number the type that a field has, if that is an int or a float, not both."""
+    allowed = get_args(hint) or (hint,)
+    if isinstance(value, list):
+        items = next(
+            (get_args(kind)[0] for kind in (hint, *allowed) if get_origin(kind) is list), None
+        )
+        return [_whole(items, item) for item in value]
+    if float not in allowed and int in allowed and isinstance(value, float):
+        return int(value) if value.is_integer() and abs(value) < EXACT else value
+    if int not in allowed and float in allowed and type(value) is int and abs(value) < EXACT:
+        return float(value)
+    return value
 
 
 def _type_name(target: type[Any], name: str) -> str:

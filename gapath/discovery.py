@@ -154,8 +154,7 @@ def readers() -> dict[str, str]:
     """Tell which map reader reads which files: kinds by the ending of a file name."""
     found: dict[str, str] = {}
     for kind in kinds("map"):
-        module = importlib.import_module(load("map", kind).__module__)
-        found |= dict.fromkeys(getattr(module, "SUFFIXES", ()), kind)
+        found |= dict.fromkeys(getattr(_module_of(kind), "SUFFIXES", ()), kind)
     return found
 
 
@@ -177,12 +176,40 @@ def reader_of(path: str, where: str) -> str:
     Raises
     ------
     InputError
-        If no reader knows the file's ending.
+        If no reader knows the file's ending; one may say why (``UNCLEAR``).
     """
     for suffix, kind in readers().items():
         if path.lower().endswith(suffix):
             return kind
-    raise InputError(where, path, f"a file name ending in {', '.join(readers())}")
+    right = f"a file name ending in {', '.join(readers())}"
+    for kind in kinds("map"):
+        unclear = getattr(_module_of(kind), "UNCLEAR", {})
+        right = next((unclear[end] for end in unclear if path.lower().endswith(end)), right)
+    raise InputError(where, path, right)
+
+
+def _module_of(kind: str) -> ModuleType:
+    """Give the module of a map reader."""
+    return importlib.import_module(load("map", kind).__module__)
+
+
+def with_setting(group: str, setting: str) -> str:
+    """Say which choices of a group have a setting.
+
+    Parameters
+    ----------
+    group : str
+        A folder of ``conf``.
+    setting : str
+        Name of a setting in its YAMLs.
+
+    Returns
+    -------
+    str
+        For example "map=rosmap or map=image"; empty if none has it.
+    """
+    names = [f"{group}={name}" for name in yaml_names(group) if setting in yaml_values(group, name)]
+    return " or ".join(names)
 
 
 @lru_cache

@@ -75,6 +75,8 @@ class GridMap:
     published_length : float
         Octile length of a shortest path from start to target, in fields, as the map's author
         gives it; NaN if nobody does.
+    inverted : bool, optional
+        Of a picture that could be read either way: whether dark was taken for an obstacle.
 
     Raises
     ------
@@ -92,6 +94,7 @@ class GridMap:
     resolution: float = 1.0
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     published_length: float = math.nan
+    inverted: bool | None = None
 
     def __post_init__(self) -> None:
         where = f"map {self.name}"
@@ -227,6 +230,31 @@ class GridMap:
         offset = np.array([0.5, self.rows - 0.5]) * self.resolution
         corner = np.array([x, y] if yaw == 0.0 else [0.0, 0.0])
         return np.array([self.resolution, -self.resolution]), offset + corner
+
+
+def other_reading(grid: PlanningMap, obstacles: NDArray[np.bool_], places: list[Field]) -> str:
+    """Suggest to read a picture the other way round, if all of some places are free then.
+
+    Parameters
+    ----------
+    grid : PlanningMap
+        The map.
+    obstacles : (rows, cols) bool
+        What would be an obstacle, were the picture inverted.
+    places : list of (x, y)
+        Fields on it.
+
+    Returns
+    -------
+    str
+        The end of a sentence; empty if the map is no picture, or a place is blocked then, too.
+    """
+    inverted = grid.inverted if isinstance(grid, GridMap) else None
+    if inverted is None or any(obstacles[y, x] for x, y in places):
+        return ""
+    now, then = ("dark", "bright") if inverted else ("bright", "dark")
+    setting = f"map.invert={str(not inverted).lower()}"
+    return f"; or, if {then} is an obstacle here, not {now}, map=image and {setting}"
 
 
 def nearest_free(obstacles: NDArray[np.bool_], place: Field) -> Field | None:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import InputError, require
-from gapath.grid import Field, GridMap, PlanningMap, nearest_free
+from gapath.grid import Field, GridMap, PlanningMap, nearest_free, other_reading
 from gapath.kernels import units
 from gapath.kernels.rng import Stream
 
@@ -89,6 +89,8 @@ class Problem:
             if self.map.obstacles[place[1], place[0]]:
                 nearest = nearest_free(self.map.obstacles, place)
                 hint = f"; the nearest is {list(nearest)}" if nearest else ", but there is none"
+                ends = [e for e in (self.start, self.target) if self.map.contains(e)]
+                hint += other_reading(self.map, self.map.weights == 0, ends)
                 raise InputError(
                     f"map.{name}", f"{list(place)}, an obstacle", f"a free field{hint}"
                 )

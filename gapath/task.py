@@ -190,6 +190,8 @@ class Task(Protocol):
     groups: ClassVar[tuple[str, ...]]
     """Groups of the configuration that it uses; its method is chosen in the first, whose name
     is also that of the rows' column with the method's name."""
+    shapes: ClassVar[Mapping[str, type[Any]]]
+    """A dataclass of the settings for each group that holds no component."""
     row: ClassVar[type[Any]]
     """The dataclass of its rows, derived from `Row`."""
     success: ClassVar[str]

@@ -13,14 +13,14 @@ from hydra.core.global_hydra import GlobalHydra
 from hydra.core.hydra_config import HydraConfig
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.plugins import Plugins
-from hydra.errors import HydraException
+from hydra.errors import HydraException, OverrideParseException
 from hydra.experimental.callback import Callback
 from hydra.plugins.search_path_plugin import SearchPathPlugin
 from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
-from omegaconf.errors import OmegaConfBaseException
+from omegaconf.errors import ConfigAttributeError, ConfigKeyError, OmegaConfBaseException
 
-from gapath.discovery import conf_packages, kinds
+from gapath.discovery import OFFERS, conf_packages, kinds, with_setting
 from gapath.errors import InputError, require
 from gapath.runs.config import Run, conf_folder, make_run
 from gapath.runs.experiment import Execution, execute
@@ -139,6 +139,15 @@ def complain(error: Exception) -> int:
         error = InputError(
             "output", error.filename, f"a folder that can be written ({error.strerror})"
         )
+    if isinstance(error, OverrideParseException):
+        name, _, value = str(error.override).partition("=")
+        quoted = shlex.quote(f'{name}="{value}"')
+        error = InputError(name, value, f"quotes around what is no plain word, {quoted}")
+    if isinstance(error.__cause__, ConfigKeyError | ConfigAttributeError):
+        key = str(error.__cause__.full_key)
+        group, _, name = key.partition(".")
+        if group in OFFERS and (others := with_setting(group, name)):
+            error = InputError(key, f"an unknown name with this {group}", f"{others}, which has it")
     reason = str(error).partition("\nConfig search path")[0] or type(error).__name__
     hidden = error.__cause__ if isinstance(error, HydraException) else None
     cause = str(hidden or "").partition("\n")[0]
@@ -177,6 +186,13 @@ def describe(run: Run, outcome: Execution, short: bool) -> str:
     lines: dict[str, object] = {
         "map": f"{grid.name}{instance}{marked}, {grid.cols} x {grid.rows} fields"
     }
+    if grid.inverted is not None:
+        obstacle, free = ("black", "white") if grid.inverted else ("white", "black")
+        other = str(not grid.inverted).lower()
+        lines["read as"] = (
+            f"a picture: {obstacle} is an obstacle, {free} the cheapest floor, grey in between "
+            f"(the other way round: map=image map.invert={other})"
+        )
     lines[run.task.groups[0]] = run.method.name
     lines |= run.task.summary(rows)
     table = "\n".join(f"{name:<14}{value}" for name, value in lines.items())

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gapath.errors import require
+from gapath.errors import Checks, require
 from gapath.grid import MAX_FIELDS, GridMap
 from gapath.mapio._input import as_field, read_text
 
@@ -39,9 +39,8 @@ class Reader:
     free_weight: float
 
     def __post_init__(self) -> None:
-        require(
-            0 <= self.free_weight < 1, "map.free_weight", self.free_weight, "a number in [0, 1)"
-        )
+        check = Checks(self, "map")
+        check("free_weight", 0 <= self.free_weight < 1, "a number in [0, 1)")
 
     def read(self) -> GridMap:
         """Read the map.

@@ -15,7 +15,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.errors import InputError, require
+from gapath.errors import Checks, InputError, require
 from gapath.grid import Field, GridMap
 from gapath.mapio._input import as_field, read_text
 
@@ -56,12 +56,9 @@ class Reader:
     inflation: int
 
     def __post_init__(self) -> None:
-        require(
-            0 <= self.free_weight < 1, "map.free_weight", self.free_weight, "a number in [0, 1)"
-        )
-        require(
-            0 <= self.inflation <= COLS, "map.inflation", self.inflation, f"an integer, 0 to {COLS}"
-        )
+        check = Checks(self, "map")
+        check("free_weight", 0 <= self.free_weight < 1, "a number in [0, 1)")
+        check("inflation", 0 <= self.inflation <= COLS, f"an integer, 0 to {COLS}")
 
     def read(self) -> GridMap:
         """Read the map.

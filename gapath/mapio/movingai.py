@@ -2,26 +2,30 @@
 
 A map is text: four header lines (``type octile``, ``height``, ``width``, ``map``), then a
 character a field. A scenario lists problems on one map with their optimal lengths.
+
+Who starts on the ground passes ground and swamp, who starts on water passes water only; nobody
+passes trees or what is out of bounds.
 """
 
 import math
 import re
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from gapath.errors import InputError, require
+from gapath.errors import Checks, InputError, require
 from gapath.grid import Field, GridMap
 from gapath.mapio._input import as_field, read_text
 
 SUFFIXES: tuple[str, ...] = (".map",)
 
-PASSABLE = ".GS"
-"""Ground, ground and swamp."""
-BLOCKED = "@OTW"
-"""Out of bounds, out of bounds, trees and water."""
+GROUND, WATER = ".GS", "W"
+"""Ground, ground and swamp; water."""
+BLOCKED = "@OT"
+"""Out of bounds, out of bounds and trees."""
 HEADER = re.compile(r"type octile *\nheight +(\d{1,9}) *\nwidth +(\d{1,9}) *\nmap *\n", re.ASCII)
 
 
@@ -71,12 +75,12 @@ def read_scenario(path: str) -> list[ScenarioProblem]:
 
 
 def _scenario_problem(where: str, line: str) -> ScenarioProblem:
-    columns = line.split("\t")
+    columns = line.split("\t") if "\t" in line else line.split()
     require(
         len(columns) == 9,
         where,
         f"{len(columns)} columns",
-        "9 columns separated by tabs: bucket, map, width, height, start x, start y, "
+        "9 columns separated by tabs or blanks: bucket, map, width, height, start x, start y, "
         "goal x, goal y, optimal length",
     )
     try:
@@ -114,10 +118,9 @@ class Reader:
     problem: int
 
     def __post_init__(self) -> None:
-        require(self.problem >= 0, "map.problem", self.problem, "an integer >= 0")
-        require(
-            0 <= self.free_weight < 1, "map.free_weight", self.free_weight, "a number in [0, 1)"
-        )
+        check = Checks(self, "map")
+        check("problem", self.problem >= 0, "an integer >= 0")
+        check("free_weight", 0 <= self.free_weight < 1, "a number in [0, 1)")
 
     def read(self) -> GridMap:
         """Read the map.
@@ -131,19 +134,23 @@ class Reader:
         ------
         InputError
             If a file cannot be read or is not of its format, header and rows of the map
-            disagree, or the scenario has no such row or is of a map of another size.
+            disagree, or the scenario has no such row or is of a map of another name or size.
         """
-        passable = _read_passable(self.path)
+        codes = _read_codes(self.path)
         start, target = as_field("map.start", self.start), as_field("map.target", self.target)
+        published = math.nan
         if self.scenario is not None:
-            problem = self._scenario_row(self.scenario, *passable.shape)
+            problem = self._scenario_row(self.scenario, *codes.shape)
             start, target = start or problem.start, target or problem.target
+            if (start, target) == (problem.start, problem.target):
+                published = problem.optimal_length
         return GridMap(
             name=Path(self.path).stem,
-            weights=np.where(passable, self.free_weight, 1.0),
+            weights=np.where(_passable(codes, start), self.free_weight, 1.0),
             start=start,
             target=target,
             source="movingai",
+            published_length=published,
         )
 
     def _scenario_row(self, scenario: str, rows: int, cols: int) -> ScenarioProblem:
@@ -155,16 +162,32 @@ class Reader:
             f"a row of {scenario}, which has {len(problems)}",
         )
         problem = problems[self.problem]
+        where = f"{scenario}, row {self.problem}"
+        name = PureWindowsPath(problem.map_name).name  # after the last / or \\
+        require(name == Path(self.path).name, where, f"a problem on {name}", f"one on {self.path}")
         require(
             (problem.rows, problem.cols) == (rows, cols),
-            f"{scenario}, row {self.problem}",
+            where,
             f"a map of {problem.cols} x {problem.rows}",
             f"the {cols} x {rows} fields of {self.path}",
         )
         return problem
 
 
-def _read_passable(path: str) -> np.ndarray[tuple[int, int], np.dtype[np.bool_]]:
+def _passable(codes: NDArray[np.uint8], start: Field | None) -> NDArray[np.bool_]:
+    """Tell which fields can be passed from a start; without one, from the ground."""
+    rows, cols = codes.shape
+    on_map = start is not None and 0 <= start[0] < cols and 0 <= start[1] < rows
+    afloat = start is not None and on_map and codes[start[1], start[0]] == ord(WATER)
+    return np.isin(codes, _numbers(WATER if afloat else GROUND))
+
+
+def _numbers(characters: str) -> NDArray[np.uint8]:
+    return np.frombuffer(characters.encode(), dtype=np.uint8)
+
+
+def _read_codes(path: str) -> NDArray[np.uint8]:
+    """Read the characters of a map, (rows, cols)."""
     text = read_text(path)
     header = HEADER.match(text)
     if header is None:
@@ -186,13 +209,12 @@ def _read_passable(path: str) -> np.ndarray[tuple[int, int], np.dtype[np.bool_]]
         )
     text = "".join(lines)  # other characters than ASCII become "?", which is not known either
     codes = np.frombuffer(text.encode("ascii", "replace"), dtype=np.uint8).reshape(rows, cols)
-    passable = np.isin(codes, np.frombuffer(PASSABLE.encode(), dtype=np.uint8))
-    known = passable | np.isin(codes, np.frombuffer(BLOCKED.encode(), dtype=np.uint8))
+    known = np.isin(codes, _numbers(GROUND + WATER + BLOCKED))
     if not known.all():
         y, x = np.argwhere(~known)[0]
         raise InputError(
             f"{path}, line {y + 5}, column {x + 1}",
             repr(lines[y][x]),
-            f"one of {' '.join(PASSABLE)} (passable) {' '.join(BLOCKED)} (not)",
+            f"one of {' '.join(GROUND)} (passable) {' '.join(BLOCKED)} (not) {WATER} (water)",
         )
-    return passable
+    return codes

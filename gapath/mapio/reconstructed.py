@@ -12,7 +12,7 @@ from importlib.resources import files
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.errors import require
+from gapath.errors import Checks
 from gapath.grid import GridMap
 from gapath.mapio import movingai
 from gapath.mapio._classes import known, unknown
@@ -70,9 +70,9 @@ class Reader:
     instance: int
 
     def __post_init__(self) -> None:
-        names = [*CLASSES, *UNKNOWN_CLASSES]
-        require(self.map_class in names, "map.map_class", self.map_class, f"one of {names}")
-        require(0 <= self.instance < 2**32, "map.instance", self.instance, "an integer from 0 on")
+        check, names = Checks(self, "map"), [*CLASSES, *UNKNOWN_CLASSES]
+        check("map_class", self.map_class in names, f"one of {names}")
+        check("instance", 0 <= self.instance < 2**32, "an integer from 0 on")
 
     def read(self) -> GridMap:
         """Give the map.

@@ -24,7 +24,7 @@ import numpy as np
 import yaml
 from numpy.typing import NDArray
 
-from gapath.errors import InputError, require
+from gapath.errors import Checks, InputError, require
 from gapath.grid import GridMap
 from gapath.mapio._input import as_field, read_text
 from gapath.mapio._pixels import Pixels, read_pixels
@@ -89,17 +89,16 @@ class Reader:
     start: list[int] | None
     target: list[int] | None
     free_weight: float
-    unknown: str | float | int
+    unknown: str | float
 
     def __post_init__(self) -> None:
-        require(
-            0 <= self.free_weight < 1, "map.free_weight", self.free_weight, "a number in [0, 1)"
-        )
+        check = Checks(self, "map")
+        check("free_weight", 0 <= self.free_weight < 1, "a number in [0, 1)")
         if isinstance(self.unknown, str):
             known = self.unknown in ("free", "obstacle")
         else:
             known = 0 <= self.unknown <= 1
-        require(known, "map.unknown", self.unknown, "free, obstacle, or a number in [0, 1]")
+        check("unknown", known, "free, obstacle, or a number in [0, 1]")
 
     def read(self) -> GridMap:
         """Read the map.

@@ -8,7 +8,7 @@ from typing import Any
 
 from omegaconf import DictConfig, OmegaConf
 
-from gapath.components import build, expanded, typed
+from gapath.components import build, checked, normalised, typed
 from gapath.discovery import kinds
 from gapath.errors import require
 from gapath.events import Recorder, Settings
@@ -154,7 +154,12 @@ def make_run(config: DictConfig, choices: Mapping[str, str | None]) -> Run:
     useful = task.threaded or root.threads == 1
     require(useful, "threads", root.threads, f"1 with task={task.name}, which they do not speed up")
     common = {key: value for key, value in asdict(root).items() if key not in HOW}
-    settings = common | {group: expanded(chosen[group]) for group in task.groups}
+    settings = common | {
+        group: checked(task.shapes[group], chosen[group], group)
+        if group in task.shapes
+        else normalised(group, chosen[group], group)
+        for group in task.groups
+    }
     recorders: list[Recorder] = [
         build("recorder", values, f"recorder.{name}") for name, values in root.recorder.items()
     ]
@@ -170,7 +175,7 @@ def make_run(config: DictConfig, choices: Mapping[str, str | None]) -> Run:
         recorder.check(root.trials)
     return Run(
         root.name,
-        method_of(task, loose, choices),
+        method_of(task, _with_types_of(settings, loose), choices),
         problem,
         made,
         [recorder for recorder in recorders if recorder.records],
@@ -185,6 +190,16 @@ def make_run(config: DictConfig, choices: Mapping[str, str | None]) -> Run:
     )
 
 
+def _with_types_of(settings: Any, loose: Any) -> Any:
+    """Give loose settings, whose planners still name their YAML, the values that they came to."""
+    if isinstance(loose, dict):
+        known = settings if isinstance(settings, dict) else {}
+        return {k: _with_types_of(known[k], v) if k in known else v for k, v in loose.items()}
+    if isinstance(loose, list) and isinstance(settings, list):
+        return [_with_types_of(*pair) for pair in zip(settings, loose, strict=True)]
+    return settings
+
+
 def split(loose: Mapping[str, Any]) -> tuple[Root, dict[str, Any]]:
     """Split a composed configuration into its root and the groups that some task uses.
 
@@ -196,7 +211,7 @@ def split(loose: Mapping[str, Any]) -> tuple[Root, dict[str, Any]]:
     Returns
     -------
     root : Root
-        Typed.
+        Typed, its components as `gapath.components.normalised`.
     chosen : dict
         Group -> its settings.
 
@@ -207,6 +222,11 @@ def split(loose: Mapping[str, Any]) -> tuple[Root, dict[str, Any]]:
     """
     groups = {group for name in kinds("task") for group in find_task(name).groups}
     root: Root = typed(Root, {k: v for k, v in loose.items() if k not in groups}, "")
+    root.map = normalised("map", root.map, "map")
+    root.recorder = {
+        name: normalised("recorder", values, f"recorder.{name}")
+        for name, values in root.recorder.items()
+    }
     chosen = {group: loose.get(group) for group in groups}
     for group in find_task(root.task).groups:
         given = chosen[group]

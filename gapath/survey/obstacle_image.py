@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import Checks, InputError, require
-from gapath.grid import nearest_free
+from gapath.grid import nearest_free, other_reading
 from gapath.kernels.units import OBSTACLE, SCALE
 from gapath.problem import Query
 
@@ -132,18 +132,20 @@ class Clearance:
             If one lies within a grown obstacle; names the nearest point that does not.
         """
         growth = self.growth(problem)
-        grown = dilate(self.obstacles(problem), growth)
+        obstacles = self.obstacles(problem)
+        grown = dilate(obstacles, growth)
         for name, place in (("start", problem.start), ("target", problem.target)):
             if grown[place[1], place[0]]:
                 nearest = nearest_free(grown, place)
-                raise InputError(
-                    f"map.{name}",
-                    f"{list(place)}, within an obstacle grown by {growth} pixels",
+                right = (
                     f"a point where the robot fits; the nearest is {list(nearest)}"
                     if nearest
                     else "a map with room for the robot; this one has none, or planner.robot_radius"
-                    " and planner.threshold that leave some",
+                    " and planner.threshold that leave some"
                 )
+                right += other_reading(problem.map, ~obstacles, [problem.start, problem.target])
+                found = f"{list(place)}, within an obstacle grown by {growth} pixels"
+                raise InputError(f"map.{name}", found, right)
 
 
 def _is_grey(problem: Query) -> bool:

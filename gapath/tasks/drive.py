@@ -42,10 +42,10 @@ class DriveSettings:
 
     Parameters
     ----------
-    sensor : dict
-        `gapath.driving.drive.Sensor`.
-    changes : dict
-        `gapath.driving.world.Changes`.
+    sensor : Sensor
+        Sees.
+    changes : Changes
+        What happens to the map meanwhile.
     step_limit : int
         Steps after which a drive has overrun.
     unknown_weight : float
@@ -54,8 +54,8 @@ class DriveSettings:
         A map file: what the robot knows before it starts.
     """
 
-    sensor: dict[str, Any]
-    changes: dict[str, Any]
+    sensor: Sensor
+    changes: Changes
     step_limit: int
     unknown_weight: float
     known_map: str | None
@@ -104,6 +104,7 @@ class Task:
 
     name: ClassVar[str] = "drive"
     groups: ClassVar[tuple[str, ...]] = ("navigator", "drive")
+    shapes: ClassVar[Mapping[str, type[Any]]] = {"drive": DriveSettings}
     row: ClassVar[type[Any]] = DriveRow
     success: ClassVar[str] = "reached"
     threaded: ClassVar[bool] = (
@@ -123,8 +124,8 @@ class Task:
         drive: DriveSettings = typed(DriveSettings, settings["drive"], "drive")
         return cls(
             build("navigator", settings["navigator"], "navigator"),
-            typed(Sensor, drive.sensor, "drive.sensor"),
-            typed(Changes, drive.changes, "drive.changes"),
+            drive.sensor,
+            drive.changes,
             drive.step_limit,
             drive.unknown_weight,
             None if drive.known_map is None else read_known_map(drive.known_map),

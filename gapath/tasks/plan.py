@@ -58,6 +58,7 @@ class Task:
 
     name: ClassVar[str] = "plan"
     groups: ClassVar[tuple[str, ...]] = ("planner",)
+    shapes: ClassVar[Mapping[str, type[Any]]] = {}
     row: ClassVar[type[Any]] = PlanRow
     success: ClassVar[str] = "feasible"
     threaded: ClassVar[bool] = True

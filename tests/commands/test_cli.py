@@ -41,6 +41,23 @@ def test_one_run_prints_a_summary_and_its_files(gapath, tmp_path):
     assert {"config.yaml", "trials.parquet", "run.mcap", "trial-0.rrd"} == set(manifest["files"])
 
 
+def test_a_picture_of_any_name_says_how_it_was_read(gapath, tmp_path):
+    pixels = np.array([[0, 255, 0], [0, 0, 0]], dtype=np.uint8)
+    Image.fromarray(pixels).save(tmp_path / "büro.png")
+    Image.fromarray(255 - pixels).save(tmp_path / "dark.png")
+    ends = ["map.start=[0,0]", "map.target=[2,0]", "planner=astar", "recorder=none"]
+    for arguments, read_as in (
+        (["map=file", f'map.path="{tmp_path}/büro.png"'], "white is an obstacle, black the"),
+        (["map=image", f"map.path={tmp_path}/dark.png", "map.invert=true"],
+         "black is an obstacle, white the"),
+    ):  # fmt: skip
+        code, text, errors = gapath(*arguments, *ends)
+        assert (code, errors) == (0, "")
+        (line,) = [line for line in text.splitlines() if line.startswith("read as")]
+        assert read_as in line
+    assert "read as" not in gapath("map=kg18_test1", "planner=astar", "recorder=none")[1]
+
+
 def test_the_same_run_is_skipped_unless_forced_or_broken(gapath, tmp_path):
     run = ["map=kg18_test1", "planner=astar", "recorder=none"]
     assert gapath(*run)[0] == 0
@@ -135,6 +152,11 @@ def test_an_interrupted_run_says_so(gapath, tmp_path, monkeypatch):
         (["planner.min_epochs=501"], "planner.min_epochs: got 501"),
         (["planner.max_epochs=0"], "planner.max_epochs: got 0"),
         (["planner.colour=red"], "planner.colour"),
+        (
+            ["map=file", "map.path=büro.map"],
+            """quotes around what is no plain word, 'map.path="büro.map"'""",
+        ),
+        (["map=image", "map.path=plan (2).png"], """'map.path="plan (2).png"'"""),
         (["+planner.colour=red"], "planner.colour: got an unknown name"),
         (["+colour=red"], "colour: got an unknown name"),
         (["planner=ga9"], "planner/ga9"),

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 from PIL import Image
 
+from gapath.api import load_map, plan
 from gapath.errors import InputError
 from gapath.grid import MAX_FIELDS
 from gapath.mapio.image import Reader
@@ -20,7 +21,7 @@ WEIGHTS = [[0.0, 0.5, 1.0], [1 / 256, 254 / 256, 0.25]]
 
 
 def read(path: object):
-    return Reader(str(path), start=None, target=None).read()
+    return Reader(str(path), start=None, target=None, invert=False).read()
 
 
 def encode(pixels: np.ndarray, kind: str = "PNG", mode: str | None = None, **more: object) -> bytes:
@@ -90,8 +91,50 @@ def test_bilevel_and_few_bits(tmp_path):
 
 def test_start_and_target(tmp_path):
     (tmp_path / "m.png").write_bytes(encode(GREY))
-    grid = Reader(str(tmp_path / "m.png"), start=[0, 1], target=[1, 0]).read()
+    grid = Reader(str(tmp_path / "m.png"), start=[0, 1], target=[1, 0], invert=False).read()
     assert (grid.start, grid.target) == ((0, 1), (1, 0))
+
+
+def test_inverted_it_is_read_like_its_negative(tmp_path):
+    (tmp_path / "m.png").write_bytes(encode(GREY))
+    (tmp_path / "negative.png").write_bytes(encode(255 - GREY))
+    grid = Reader(str(tmp_path / "m.png"), start=None, target=None, invert=True).read()
+    assert grid.weights.tolist() == read(tmp_path / "negative.png").weights.tolist()
+    assert (grid.inverted, read(tmp_path / "m.png").inverted) == (True, False)
+
+
+FLOOR = np.full((5, 9), 255, dtype=np.uint8)
+FLOOR[:3, 4] = 0
+SHADES = np.where(FLOOR == 255, 200, 60).astype(np.uint8)
+SHADES[4, 4:] = 190  # not black and white
+
+
+@pytest.mark.parametrize(
+    ("pixels", "invert", "ends", "planner", "suggested"),
+    [
+        (FLOOR, False, ((0, 0), (8, 0)), "astar", "map.invert=true"),
+        (255 - FLOOR, True, ((0, 0), (8, 0)), "astar", "map.invert=false"),
+        (FLOOR, False, ((0, 0), (4, 0)), "astar", None),  # then the target would be an obstacle
+        (FLOOR, False, ((4, 0), (8, 0)), "astar", None),
+        (255 - FLOOR, False, ((4, 0), (8, 0)), "astar", None),
+        (SHADES, False, ((0, 0), (8, 0)), "visibility_astar", "map.invert=true"),
+        (SHADES, False, ((0, 0), (4, 0)), "visibility_astar", None),
+        (255 - SHADES, False, ((3, 0), (8, 0)), "visibility_astar", None),  # only too near to one
+    ],
+)
+def test_the_other_reading_is_suggested_where_it_would_help(
+    tmp_path, pixels, invert, ends, planner, suggested
+):
+    (tmp_path / "m.png").write_bytes(encode(pixels))
+    grid = load_map(tmp_path / "m.png", invert=invert)
+    with pytest.raises(InputError) as caught:
+        plan(grid, *ends, planner=planner, **({"robot_radius": 1} if "vis" in planner else {}))
+    message = str(caught.value)
+    assert ("map.invert" in message) == (suggested is not None)
+    assert suggested is None or f"map=image and {suggested}" in message
+    if suggested:
+        other = load_map(tmp_path / "m.png", invert=not invert)
+        assert plan(other, *ends, planner="astar").feasible
 
 
 @given(arrays(np.uint8, array_shapes(min_dims=2, max_dims=2, max_side=9)), st.booleans())

@@ -11,6 +11,8 @@ from hypothesis.extra.numpy import array_shapes, arrays
 from gapath.errors import InputError
 from gapath.grid import GridMap
 from gapath.mapio.movingai import Reader, read_scenario
+from gapath.planning.shortest_path import shortest_path
+from gapath.problem import Problem
 
 DATA = Path(os.environ.get("GAPATH_DATA", Path(__file__).parents[3] / "shared" / "data"))
 READER = Reader("", start=None, target=None, scenario=None, problem=0, free_weight=0.5)
@@ -103,10 +105,51 @@ def test_scenario_gives_start_and_target(tmp_path):
 
 
 def test_scenario_rows(tmp_path):
-    for text in (SCENARIO, SCENARIO.replace("1\n", "1.0\n", 1), SCENARIO.replace("\n", "\r\n")):
+    spaced = SCENARIO.replace("1\n", "1.0\n", 1).replace("\t", "  ")
+    for text in (SCENARIO, spaced, SCENARIO.replace("\n", "\r\n")):
         rows = read_scenario(save(tmp_path, "m.scen", text + "\n\n"))
         assert len(rows) == 2
         assert rows[0] == (3, "m.map", 7, 2, (2, 0), (6, 1), 4.41421356)
+
+
+@pytest.mark.parametrize("folder", ["maps/dao/", "..\\maps\\", "", "./"])
+def test_a_scenario_names_its_map_in_any_folder(tmp_path, folder):
+    path = save(tmp_path, "m.map", MAP)
+    scenario = save(tmp_path, "m.scen", SCENARIO.replace("m.map", f"{folder}m.map"))
+    assert replace(READER, path=path, scenario=scenario).read().start == (2, 0)
+
+
+TERRAIN = "type octile\nheight 2\nwidth 7\nmap\n.SWWTGW\n.WW.T.@\n"
+
+
+@pytest.mark.parametrize(
+    ("start", "passable"),
+    [
+        ([0, 0], ["##   # ", "#  # # "]),  # from the ground: ground and swamp
+        ([1, 0], ["##   # ", "#  # # "]),
+        (None, ["##   # ", "#  # # "]),
+        ([2, 0], ["  ##  #", " ##    "]),  # from water: water
+        ([4, 0], ["##   # ", "#  # # "]),  # trees are never passed: the start is refused later
+        ([7, 0], ["##   # ", "#  # # "]),  # outside, refused later
+    ],
+)
+def test_who_starts_on_water_stays_on_it(tmp_path, start, passable):
+    path = save(tmp_path, "m.map", TERRAIN)
+    grid = replace(READER, path=path, start=start).read()
+    assert [
+        "".join(" #"[free] for free in row) for row in (~grid.obstacles).astype(int)
+    ] == passable
+    if start == [4, 0]:
+        with pytest.raises(InputError, match=r"map.start: got \[4, 0\], an obstacle"):
+            Problem(grid, grid.start, (0, 0))
+
+
+def test_the_scenario_may_start_on_water(tmp_path):
+    path = save(tmp_path, "m.map", TERRAIN)
+    row = "0\tm.map\t7\t2\t2\t0\t1\t1\t1.41421356\n"
+    scenario = save(tmp_path, "m.scen", "version 1\n" + row)
+    grid = replace(READER, path=path, scenario=scenario).read()
+    assert shortest_path(Problem(grid, grid.start, grid.target)).path.tolist() == [[2, 0], [1, 1]]
 
 
 def test_scenario_without_rows(tmp_path):
@@ -118,8 +161,13 @@ def test_scenario_without_rows(tmp_path):
     [
         ("version 2\n" + ROW, "line 1: got 'version 2'"),
         (ROW, "line 1"),
-        ("version 1\n" + ROW.replace("\t", " "), "line 2: got 1 columns, expected 9"),
-        ("version 1\n" + ROW + "\n" + ROW, "line 3: got 1 columns"),
+        ("version 1\n" + ROW.replace("\t", ","), "line 2: got 1 columns, expected 9"),
+        ("version 1.0\n" + ROW.replace("\t", " ").replace("m.map ", ""), "line 2: got 8 columns"),
+        ("version 1\n" + ROW + "\n" + ROW, "line 3: got 0 columns"),
+        ("version 1\n" + ROW.replace("m.map", "n.map"), "row 0: got a problem on n.map, expected"),
+        ("version 1\n" + ROW.replace("m.map", "m.map/n"), "row 0: got a problem on n, expected"),
+        ("version 1\n" + ROW.replace("m.map", "m.MAP"), "row 0: got a problem on m.MAP, expected"),
+        ("version 1\n" + ROW.replace("\t7\t2\t", "\t7\t3\t"), "row 0: got a map of 7 x 3"),
         ("version 1\n" + ROW.replace("\t2\t2\t", "\t2\t2.5\t"), "line 2: got '3\\tm.map"),
         ("version 1\n" + ROW.replace("4.41421356", "nan"), "line 2: got nan"),
         ("version 1\n" + ROW.replace("4.41421356", "-1"), "line 2: got -1.0"),

@@ -42,6 +42,7 @@ class Task:
 
     name: ClassVar[str] = "round_trip"
     groups: ClassVar[tuple[str, ...]] = ("planner",)
+    shapes: ClassVar[Mapping[str, type[Any]]] = {}
     row: ClassVar[type[Any]] = RoundTripRow
     success: ClassVar[str] = "came_back"
     threaded: ClassVar[bool] = False
