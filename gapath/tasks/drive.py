@@ -1,5 +1,6 @@
 """The task to drive: trials are drives through an unknown map."""
 
+import math
 import statistics
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -17,8 +18,10 @@ from gapath.driving.told import drive_events
 from gapath.driving.world import Changes
 from gapath.errors import InputError, require
 from gapath.events import (
+    NEVER_LEFT,
     Called,
     DriveFinished,
+    DriveStarted,
     Outcome,
     PathsChanged,
     RunStarted,
@@ -30,6 +33,12 @@ from gapath.planning.path import path_weights
 from gapath.planning.shortest_path import shortest_path
 from gapath.problem import Plan, Problem
 from gapath.task import Batch, Trial
+
+KNOWN = "drive.known_map"
+"""The setting that names what the robot knows before it starts."""
+
+MOST_STEPS = 10**6
+"""The largest step limit."""
 
 WARM_UP = 100
 """Steps of a drive that is thrown away: it meets an obstacle, so that the kernels are compiled
@@ -46,8 +55,8 @@ class DriveSettings:
         `gapath.driving.drive.Sensor`.
     changes : dict
         `gapath.driving.world.Changes`.
-    step_limit : int
-        Steps after which a drive has overrun.
+    step_limit : int or None
+        Steps after which a drive has overrun; None for what the map's size asks (`usual_limit`).
     unknown_weight : float
         What an unknown field counts.
     known_map : str or None
@@ -56,16 +65,16 @@ class DriveSettings:
 
     sensor: dict[str, Any]
     changes: dict[str, Any]
-    step_limit: int
+    step_limit: int | None
     unknown_weight: float
     known_map: str | None
 
     def __post_init__(self) -> None:
         require(
-            1 <= self.step_limit <= 10**6,
+            self.step_limit is None or 1 <= self.step_limit <= MOST_STEPS,
             "drive.step_limit",
             self.step_limit,
-            "an integer from 1 to 1000000",
+            f"an integer from 1 to {MOST_STEPS}, or null",
         )
         require(
             0 <= self.unknown_weight < 1,
@@ -87,20 +96,20 @@ class Task:
         Sees.
     changes : Changes
         What happens to the map meanwhile.
-    step_limit : int
-        Steps after which a drive has overrun.
+    step_limit : int or None
+        Steps after which a drive has overrun; None for what the map's size asks (`usual_limit`).
     unknown_weight : float
         What an unknown field counts.
-    before : GridMap or None
-        What the robot knows before it starts.
+    known_map : str or None
+        A map file: what the robot knows before it starts.
     """
 
     navigator: Navigator
     sensor: Sensor
     changes: Changes
-    step_limit: int
+    step_limit: int | None
     unknown_weight: float
-    before: GridMap | None
+    known_map: str | None
 
     name: ClassVar[str] = "drive"
     groups: ClassVar[tuple[str, ...]] = ("navigator", "drive")
@@ -111,6 +120,7 @@ class Task:
     )
     events: ClassVar[tuple[type[Any], ...]] = (
         TrialStarted,
+        DriveStarted,
         Called,
         PathsChanged,
         Stepped,
@@ -127,8 +137,12 @@ class Task:
             typed(Changes, drive.changes, "drive.changes"),
             drive.step_limit,
             drive.unknown_weight,
-            None if drive.known_map is None else read_known_map(drive.known_map),
+            drive.known_map,
         )
+
+    def read(self) -> Mapping[str, GridMap]:
+        """Read what the robot knows before it starts; raises InputError."""
+        return {KNOWN: read_known_map(self.known_map)} if self.known_map is not None else {}
 
     @staticmethod
     def told_optimum(run: RunStarted) -> dict[str, str]:
@@ -142,11 +156,11 @@ class Task:
 
     def check(self, problem: Problem) -> None:
         """Raise InputError if what the robot knows before it starts is of another size."""
-        if self.before is not None:
-            true, known = problem.map, self.before
+        if self.known_map is not None:
+            true, known = problem.map, problem.maps[KNOWN]
             require(
                 (known.rows, known.cols) == (true.rows, true.cols),
-                "drive.known_map",
+                KNOWN,
                 f"{known.cols} x {known.rows} fields",
                 f"{true.cols} x {true.rows} as the map itself",
             )
@@ -187,9 +201,10 @@ class Task:
             In order.
         """
         problem, seed = batch.problem, batch.seed
-        self._drive(problem, seed, 0, min(WARM_UP, self.step_limit))
+        limit = self.step_limit or usual_limit(problem.map.rows * problem.map.cols)
+        self._drive(problem, seed, 0, min(WARM_UP, limit))
         for trial in range(batch.trials):
-            driven = self._drive(problem, seed, trial, self.step_limit)
+            driven = self._drive(problem, seed, trial, limit)
             row = drive_row(batch, trial, driven, optimum)
             events = partial(drive_events, driven, problem.map.cols, seed, trial)
             yield Trial(row, row.reached, len(driven.frames), events)
@@ -198,22 +213,26 @@ class Task:
         """Sum drives up for the terminal: label -> value."""
         if len(rows) == 1:
             row = rows[0]
+            shortest = "no way to the target"
+            if not math.isnan(row.shortest_steps):
+                shortest = f"{row.shortest_steps:g} steps possible"
+            ratio = {} if math.isnan(row.steps_ratio) else {"ratio": f"{row.steps_ratio:.3g}"}
             return {
                 "seed": row.seed,
-                "outcome": row.outcome,
+                "outcome": _ending(row),
                 "steps": row.steps,
-                "shortest": f"{row.shortest_steps:g} steps possible",
-                "ratio": f"{row.steps_ratio:.3g}" if row.reached else "-",
+                "shortest": shortest,
+                **ratio,
                 "GA calls": f"{row.ga_calls} (A {row.calls_a}, B {row.calls_b}, C {row.calls_c})",
                 "replans": row.replans,
                 "returns": row.returns,
                 "time": _median_time(rows),
             }
         lines: dict[str, object] = {"drives": len(rows)}
-        for outcome in Outcome:
-            count = sum(row.outcome == outcome.name.lower() for row in rows)
-            lines[outcome.name.lower()] = f"{count} ({100 * count / len(rows):.1f} %)"
-        ratios = [row.steps_ratio for row in rows if row.reached]
+        for name, these in _by_outcome(rows).items():
+            share = f"{len(these)} ({100 * len(these) / len(rows):.1f} %)"
+            lines[name] = f"{share}{_remark(these)}"
+        ratios = [row.steps_ratio for row in rows if not math.isnan(row.steps_ratio)]
         if ratios:
             lines["median ratio"] = f"{statistics.median(ratios):.3g} of the shortest possible"
         lines["median calls"] = f"{statistics.median(row.ga_calls for row in rows):g}"
@@ -222,8 +241,14 @@ class Task:
 
     def line(self, rows: list[DriveRow]) -> str:
         """Sum drives up in one line."""
-        reached = sum(row.reached for row in rows)
-        return f"{reached} of {len(rows)} reached the target, median {_median_time(rows)}"
+        if len(rows) == 1:
+            return f"{_ending(rows[0])}, {rows[0].steps} steps, {_median_time(rows)}"
+        ends = [
+            f"{len(these)} {name}{_remark(these)}"
+            for name, these in _by_outcome(rows).items()
+            if these
+        ]
+        return f"{len(rows)} drives: {', '.join(ends)}; median {_median_time(rows)}"
 
     def _drive(self, problem: Problem, seed: int, trial: int, step_limit: int) -> Drive:
         return drive(
@@ -235,8 +260,42 @@ class Task:
             trial,
             step_limit,
             self.unknown_weight,
-            self.before,
+            problem.maps.get(KNOWN),
         )
+
+
+def usual_limit(fields: int) -> int:
+    """Give the step limit of a map on which none is set.
+
+    Parameters
+    ----------
+    fields : int
+        Fields of the map.
+
+    Returns
+    -------
+    int
+        Two steps for every five fields, which are KG18's 2000 on its maps (Sec. 6.4), as on
+        smaller ones; at most `MOST_STEPS`.
+    """
+    return min(max(2000, 2 * fields // 5), MOST_STEPS)
+
+
+def _by_outcome(rows: list[DriveRow]) -> dict[str, list[DriveRow]]:
+    names = [outcome.name.lower() for outcome in Outcome]
+    return {name: [row for row in rows if row.outcome == name] for name in names}
+
+
+def _ending(row: DriveRow) -> str:
+    return row.outcome + _remark([row])
+
+
+def _remark(rows: list[DriveRow]) -> str:
+    """Say what an outcome alone does not, of drives that ended alike."""
+    if any(row.outcome == Outcome.OVERRAN.name.lower() for row in rows):
+        return f" (drive.step_limit: {rows[0].steps})"
+    stayed = sum(row.never_left for row in rows)
+    return f" ({f'{stayed} ' if len(rows) > 1 else ''}{NEVER_LEFT})" if stayed else ""
 
 
 def _median_time(rows: list[DriveRow]) -> str:
@@ -261,9 +320,9 @@ def read_known_map(path: str) -> GridMap:
     InputError
         If the file cannot be used.
     """
-    kind = reader_of(path, "drive.known_map")
+    kind = reader_of(path, KNOWN)
     values = yaml_values("map", kind) | {"path": path}
     if "unknown" in values:
         values["unknown"] = "free"
-    grid: GridMap = build("map", values, "drive.known_map").read()
+    grid: GridMap = build("map", values, KNOWN).read()
     return grid
