@@ -37,8 +37,11 @@ from gapath.task import Batch, Trial
 KNOWN = "drive.known_map"
 """The setting that names what the robot knows before it starts."""
 
-MOST_STEPS = 10**6
-"""The largest step limit."""
+LEAST_STEPS, MOST_STEPS = 2000, 10**6
+"""The smallest step limit that a map's size gives, and the largest of all."""
+
+STEPS_RULE = f"two steps for every five fields, no fewer than {LEAST_STEPS}"
+"""`usual_limit` in words."""
 
 WARM_UP = 100
 """Steps of a drive that is thrown away: it meets an obstacle, so that the kernels are compiled
@@ -219,7 +222,7 @@ class Task:
             ratio = {} if math.isnan(row.steps_ratio) else {"ratio": f"{row.steps_ratio:.3g}"}
             return {
                 "seed": row.seed,
-                "outcome": _ending(row),
+                "outcome": row.outcome + self._remark(rows),
                 "steps": row.steps,
                 "shortest": shortest,
                 **ratio,
@@ -231,7 +234,7 @@ class Task:
         lines: dict[str, object] = {"drives": len(rows)}
         for name, these in _by_outcome(rows).items():
             share = f"{len(these)} ({100 * len(these) / len(rows):.1f} %)"
-            lines[name] = f"{share}{_remark(these)}"
+            lines[name] = f"{share}{self._remark(these)}"
         ratios = [row.steps_ratio for row in rows if not math.isnan(row.steps_ratio)]
         if ratios:
             lines["median ratio"] = f"{statistics.median(ratios):.3g} of the shortest possible"
@@ -242,13 +245,24 @@ class Task:
     def line(self, rows: list[DriveRow]) -> str:
         """Sum drives up in one line."""
         if len(rows) == 1:
-            return f"{_ending(rows[0])}, {rows[0].steps} steps, {_median_time(rows)}"
+            return (
+                f"{rows[0].outcome}{self._remark(rows)}, {rows[0].steps} steps, "
+                f"{_median_time(rows)}"
+            )
         ends = [
-            f"{len(these)} {name}{_remark(these)}"
+            f"{len(these)} {name}{self._remark(these)}"
             for name, these in _by_outcome(rows).items()
             if these
         ]
         return f"{len(rows)} drives: {', '.join(ends)}; median {_median_time(rows)}"
+
+    def _remark(self, rows: list[DriveRow]) -> str:
+        """Say what an outcome alone does not, of drives that ended alike."""
+        if any(row.outcome == Outcome.OVERRAN.name.lower() for row in rows):
+            rule = "" if self.step_limit else f", {STEPS_RULE}"
+            return f" (drive.step_limit: {rows[0].steps}{rule})"
+        stayed = sum(row.never_left for row in rows)
+        return f" ({f'{stayed} ' if len(rows) > 1 else ''}{NEVER_LEFT})" if stayed else ""
 
     def _drive(self, problem: Problem, seed: int, trial: int, step_limit: int) -> Drive:
         return drive(
@@ -278,24 +292,12 @@ def usual_limit(fields: int) -> int:
         Two steps for every five fields, which are KG18's 2000 on its maps (Sec. 6.4), as on
         smaller ones; at most `MOST_STEPS`.
     """
-    return min(max(2000, 2 * fields // 5), MOST_STEPS)
+    return min(max(LEAST_STEPS, 2 * fields // 5), MOST_STEPS)
 
 
 def _by_outcome(rows: list[DriveRow]) -> dict[str, list[DriveRow]]:
     names = [outcome.name.lower() for outcome in Outcome]
     return {name: [row for row in rows if row.outcome == name] for name in names}
-
-
-def _ending(row: DriveRow) -> str:
-    return row.outcome + _remark([row])
-
-
-def _remark(rows: list[DriveRow]) -> str:
-    """Say what an outcome alone does not, of drives that ended alike."""
-    if any(row.outcome == Outcome.OVERRAN.name.lower() for row in rows):
-        return f" (drive.step_limit: {rows[0].steps})"
-    stayed = sum(row.never_left for row in rows)
-    return f" ({f'{stayed} ' if len(rows) > 1 else ''}{NEVER_LEFT})" if stayed else ""
 
 
 def _median_time(rows: list[DriveRow]) -> str:

@@ -85,6 +85,13 @@ def test_a_log_is_done_again_without_the_files_that_its_run_read(
     assert run.problem.maps["drive.known_map"].obstacles.sum() == 2
 
 
+def test_a_drive_that_overran_says_where_its_limit_comes_from(gapath, tmp_path, monkeypatch):
+    monkeypatch.setattr("gapath.tasks.drive.LEAST_STEPS", 5)
+    (tmp_path / "room.map").write_text(f"type octile\nheight 1\nwidth 15\nmap\n{'.' * 15}\n")
+    text = gapath(*DRIVE, "map.target=[14,0]", "recorder=none")[1]
+    assert lines(text)["outcome"].startswith("overran (drive.step_limit: 6, two steps for every")
+
+
 def test_the_step_limit_goes_with_the_map_unless_it_is_set(gapath, tmp_path):
     assert [usual_limit(size) for size in (1, 100 * 50, 400 * 300, 8192**2)] == [
         2000, 2000, 48_000, 10**6
