@@ -42,6 +42,10 @@ class Outcome(IntEnum):
     """It used up its steps."""
 
 
+NEVER_LEFT = "never left: no planner found a path from the start"
+"""What a drive is said to be whose robot came back without having gone anywhere."""
+
+
 @dataclass(frozen=True, eq=False)
 class RunStarted:
     """The first event: everything that the trials of a run share.
@@ -110,12 +114,51 @@ class Surveyed:
 
 
 @dataclass(frozen=True, eq=False)
-class TrialFinished:
-    """A trial ended at this step with this answer."""
+class Finished:
+    """The last event of a trial, of whatever kind."""
 
     step: int
     trial: int
+
+    @property
+    def ending(self) -> str:
+        """How the trial ended, in a word or two for people."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True, eq=False)
+class TrialFinished(Finished):
+    """A trial ended at this step with this answer."""
+
     answer: Answer
+
+    @property
+    def ending(self) -> str:
+        """The answer's status."""
+        return self.answer.status.name.lower()
+
+
+@dataclass(frozen=True)
+class DriveStarted:
+    """A trial is a drive: what its robot can do.
+
+    Parameters
+    ----------
+    step, trial : int
+        When, and in which trial.
+    sensor_range : int
+        Layers of the triangle that it sees (KG18 Sec. 5).
+    unknown_weight : float
+        What it takes an unknown field to cost.
+    step_limit : int
+        Steps after which it has overrun.
+    """
+
+    step: int
+    trial: int
+    sensor_range: int
+    unknown_weight: float
+    step_limit: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,13 +241,35 @@ class PathsChanged:
 
 
 @dataclass(frozen=True)
-class DriveFinished:
-    """A drive ended at this step: how, and after how many steps of the robot."""
+class DriveFinished(Finished):
+    """A drive ended at this step.
 
-    step: int
-    trial: int
+    Parameters
+    ----------
+    step, trial : int
+        When, and in which trial.
+    outcome : Outcome
+        How.
+    steps : int
+        After how many steps of the robot.
+    stands : int
+        In how many of them it stood.
+    """
+
     outcome: Outcome
     steps: int
+    stands: int
+
+    @property
+    def ending(self) -> str:
+        """The outcome, and whether the robot ever left its start."""
+        name = self.outcome.name.lower()
+        return f"{name} ({NEVER_LEFT})" if self.never_left else name
+
+    @property
+    def never_left(self) -> bool:
+        """Whether the robot came back without having gone anywhere."""
+        return self.outcome is Outcome.RETURNED and self.stands == self.steps
 
 
 @dataclass(frozen=True)
@@ -222,6 +287,7 @@ Event: TypeAlias = (
     | Evolved
     | Surveyed
     | TrialFinished
+    | DriveStarted
     | Stepped
     | Called
     | PathsChanged

@@ -62,6 +62,8 @@ class Problem:
         Free fields on the map.
     corner_cutting : CornerCutting
         The rule for diagonal steps, the same for every planner.
+    maps : mapping of str to GridMap
+        What else a task read from files (`gapath.task.Task.read`): setting -> map.
 
     Raises
     ------
@@ -73,6 +75,7 @@ class Problem:
     start: Field
     target: Field
     corner_cutting: CornerCutting = CornerCutting.ALLOW
+    maps: Mapping[str, GridMap] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
         for name in ("start", "target"):

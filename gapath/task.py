@@ -13,6 +13,7 @@ from typing import Any, ClassVar, NamedTuple, Protocol, Self, get_type_hints, ru
 from gapath.discovery import kinds, load
 from gapath.errors import require
 from gapath.events import Event, RunStarted
+from gapath.grid import GridMap
 from gapath.planning.path import octile_length
 from gapath.problem import Plan, Problem
 
@@ -204,6 +205,13 @@ class Task(Protocol):
     @classmethod
     def make(cls, settings: Mapping[str, Any]) -> Self:
         """Make it from nested settings, of which it reads its groups; raises InputError."""
+
+    def read(self) -> Mapping[str, GridMap]:
+        """Read the files that its settings name: setting -> map.
+
+        Once, when a run is made; from there on they are in `Problem.maps`, and so in the log:
+        to do the run again takes no file. Raises InputError.
+        """
 
     @staticmethod
     def told_optimum(run: RunStarted) -> dict[str, str]:

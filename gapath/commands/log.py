@@ -16,12 +16,11 @@ import numpy as np
 
 from gapath.errors import InputError, require
 from gapath.events import (
-    DriveFinished,
     Event,
+    Finished,
     RunFinished,
     RunStarted,
     Stepped,
-    TrialFinished,
 )
 from gapath.recorders import mcap
 from gapath.store.settings import text_of
@@ -136,10 +135,8 @@ def _summary(events: Iterator[Event]) -> tuple[RunStarted, bool, Counter[str]]:
     assert isinstance(run, RunStarted), "the reader gives it first"
     finished: Counter[str] = Counter()
     for last in events:
-        if isinstance(last, TrialFinished):
-            finished[last.answer.status.name.lower()] += 1
-        elif isinstance(last, DriveFinished):
-            finished[last.outcome.name.lower()] += 1
+        if isinstance(last, Finished):
+            finished[last.ending] += 1
     return run, isinstance(last, RunFinished), finished
 
 

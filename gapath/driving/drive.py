@@ -86,6 +86,12 @@ class Drive:
 
     Parameters
     ----------
+    sensor : Sensor
+        What its robot saw.
+    step_limit : int
+        Steps after which it would have overrun.
+    unknown_weight : float
+        What an unknown field counted.
     outcome : Outcome
         How it ended.
     legs : list of Leg
@@ -94,6 +100,9 @@ class Drive:
         Wall time of looking and deciding, in seconds.
     """
 
+    sensor: Sensor
+    step_limit: int
+    unknown_weight: float
     outcome: Outcome
     legs: list[Leg] = field(repr=False)
     compute_time_s: float
@@ -222,4 +231,5 @@ def drive(
             state = cast(Following, state).further(passed[1:])
         step += len(ahead)
         legs.append(Leg(decision, looks, passed, time.perf_counter() - last))
-    return Drive(outcome, legs, time.perf_counter() - begin)
+    seconds = time.perf_counter() - begin
+    return Drive(sensor, step_limit, unknown_weight, outcome, legs, seconds)

@@ -1,12 +1,22 @@
 """A drive told as events."""
 
 from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gapath.driving.drive import Drive
-from gapath.events import Called, DriveFinished, Event, Mode, PathsChanged, Stepped, TrialStarted
+from gapath.events import (
+    Called,
+    DriveFinished,
+    DriveStarted,
+    Event,
+    Mode,
+    PathsChanged,
+    Stepped,
+    TrialStarted,
+)
 
 
 def drive_events(driven: Drive, cols: int, seed: int, trial: int, step: int) -> Iterator[Event]:
@@ -26,10 +36,12 @@ def drive_events(driven: Drive, cols: int, seed: int, trial: int, step: int) -> 
     Yields
     ------
     Event
-        Its start; for each step the planners called, the paths if they changed, the step
-        itself; its end.
+        Its start, and what its robot can do; for each step the planners called, the paths if they
+        changed, the step itself; its end.
     """
     yield TrialStarted(step, trial, seed)
+    layers, unknown = driven.sensor.range, driven.unknown_weight
+    yield DriveStarted(step, trial, layers, unknown, driven.step_limit)
     path = past = np.empty((0, 2), dtype=np.int32)
     for i, frame in enumerate(driven.frames):
         now, decision = step + i, frame.decision
@@ -53,8 +65,10 @@ def drive_events(driven: Drive, cols: int, seed: int, trial: int, step: int) -> 
         fields = np.stack([frame.news % cols, frame.news // cols], axis=1).astype(np.int32)
         entries = frame.entries.astype(np.int32)
         yield Stepped(now, trial, frame.place, frame.heading, mode, fields, entries, frame.seconds)
-    steps = len(driven.frames) - 1
-    yield DriveFinished(step + steps, trial, driven.outcome, steps)
+    places = [frame.place for frame in driven.frames]
+    stands = sum(now == before for before, now in pairwise(places))
+    steps = len(places) - 1
+    yield DriveFinished(step + steps, trial, driven.outcome, steps, stands)
 
 
 def _continues(before: NDArray[np.int32], now: NDArray[np.int32]) -> bool:

@@ -163,10 +163,11 @@ def make_run(config: DictConfig, choices: Mapping[str, str | None]) -> Run:
     recorders: list[Recorder] = [
         build("recorder", values, f"recorder.{name}") for name, values in root.recorder.items()
     ]
-    with watched() as map_inputs:
-        problem = read_problem(root)
     with watched() as method_inputs:
         made = task.make(settings)
+        maps = made.read()
+    with watched() as map_inputs:
+        problem = read_problem(root, maps)
     if root.kernels != "auto":
         made = made.using(root.kernels)
     made.check(problem)
@@ -234,8 +235,8 @@ def split(loose: Mapping[str, Any]) -> tuple[Root, dict[str, Any]]:
     return root, chosen
 
 
-def read_problem(settings: Root) -> Problem:
-    """Read the map and pose the problem that its start and target define."""
+def read_problem(settings: Root, maps: Mapping[str, GridMap]) -> Problem:
+    """Read the map and pose the problem that its start and target define, with a task's maps."""
     rules = [rule.name.lower() for rule in CornerCutting]
     require(
         settings.corner_cutting in rules,
@@ -251,7 +252,7 @@ def read_problem(settings: Root) -> Problem:
         require(getattr(grid, name) is not None, f"map.{name}", "null", "a field [x, y]")
     assert grid.start is not None and grid.target is not None
     rule = CornerCutting[settings.corner_cutting.upper()]
-    return Problem(grid, grid.start, grid.target, rule)
+    return Problem(grid, grid.start, grid.target, rule, maps)
 
 
 def task_of(settings: Settings) -> Task:

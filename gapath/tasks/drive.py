@@ -1,5 +1,6 @@
 """The task to drive: trials are drives through an unknown map."""
 
+import math
 import statistics
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -17,8 +18,10 @@ from gapath.driving.told import drive_events
 from gapath.driving.world import Changes
 from gapath.errors import InputError, require
 from gapath.events import (
+    NEVER_LEFT,
     Called,
     DriveFinished,
+    DriveStarted,
     Outcome,
     PathsChanged,
     RunStarted,
@@ -30,6 +33,15 @@ from gapath.planning.path import path_weights
 from gapath.planning.shortest_path import shortest_path
 from gapath.problem import Plan, Problem
 from gapath.task import Batch, Trial
+
+KNOWN = "drive.known_map"
+"""The setting that names what the robot knows before it starts."""
+
+LEAST_STEPS, MOST_STEPS = 2000, 10**6
+"""The smallest step limit that a map's size gives, and the largest of all."""
+
+STEPS_RULE = f"two steps for every five fields, no fewer than {LEAST_STEPS}"
+"""`usual_limit` in words."""
 
 WARM_UP = 100
 """Steps of a drive that is thrown away: it meets an obstacle, so that the kernels are compiled
@@ -46,8 +58,8 @@ class DriveSettings:
         Sees.
     changes : Changes
         What happens to the map meanwhile.
-    step_limit : int
-        Steps after which a drive has overrun.
+    step_limit : int or None
+        Steps after which a drive has overrun; None for what the map's size asks (`usual_limit`).
     unknown_weight : float
         What an unknown field counts.
     known_map : str or None
@@ -56,16 +68,16 @@ class DriveSettings:
 
     sensor: Sensor
     changes: Changes
-    step_limit: int
+    step_limit: int | None
     unknown_weight: float
     known_map: str | None
 
     def __post_init__(self) -> None:
         require(
-            1 <= self.step_limit <= 10**6,
+            self.step_limit is None or 1 <= self.step_limit <= MOST_STEPS,
             "drive.step_limit",
             self.step_limit,
-            "an integer from 1 to 1000000",
+            f"an integer from 1 to {MOST_STEPS}, or null",
         )
         require(
             0 <= self.unknown_weight < 1,
@@ -87,20 +99,20 @@ class Task:
         Sees.
     changes : Changes
         What happens to the map meanwhile.
-    step_limit : int
-        Steps after which a drive has overrun.
+    step_limit : int or None
+        Steps after which a drive has overrun; None for what the map's size asks (`usual_limit`).
     unknown_weight : float
         What an unknown field counts.
-    before : GridMap or None
-        What the robot knows before it starts.
+    known_map : str or None
+        A map file: what the robot knows before it starts.
     """
 
     navigator: Navigator
     sensor: Sensor
     changes: Changes
-    step_limit: int
+    step_limit: int | None
     unknown_weight: float
-    before: GridMap | None
+    known_map: str | None
 
     name: ClassVar[str] = "drive"
     groups: ClassVar[tuple[str, ...]] = ("navigator", "drive")
@@ -112,6 +124,7 @@ class Task:
     )
     events: ClassVar[tuple[type[Any], ...]] = (
         TrialStarted,
+        DriveStarted,
         Called,
         PathsChanged,
         Stepped,
@@ -128,8 +141,12 @@ class Task:
             drive.changes,
             drive.step_limit,
             drive.unknown_weight,
-            None if drive.known_map is None else read_known_map(drive.known_map),
+            drive.known_map,
         )
+
+    def read(self) -> Mapping[str, GridMap]:
+        """Read what the robot knows before it starts; raises InputError."""
+        return {KNOWN: read_known_map(self.known_map)} if self.known_map is not None else {}
 
     @staticmethod
     def told_optimum(run: RunStarted) -> dict[str, str]:
@@ -143,11 +160,11 @@ class Task:
 
     def check(self, problem: Problem) -> None:
         """Raise InputError if what the robot knows before it starts is of another size."""
-        if self.before is not None:
-            true, known = problem.map, self.before
+        if self.known_map is not None:
+            true, known = problem.map, problem.maps[KNOWN]
             require(
                 (known.rows, known.cols) == (true.rows, true.cols),
-                "drive.known_map",
+                KNOWN,
                 f"{known.cols} x {known.rows} fields",
                 f"{true.cols} x {true.rows} as the map itself",
             )
@@ -188,9 +205,10 @@ class Task:
             In order.
         """
         problem, seed = batch.problem, batch.seed
-        self._drive(problem, seed, 0, min(WARM_UP, self.step_limit))
+        limit = self.step_limit or usual_limit(problem.map.rows * problem.map.cols)
+        self._drive(problem, seed, 0, min(WARM_UP, limit))
         for trial in range(batch.trials):
-            driven = self._drive(problem, seed, trial, self.step_limit)
+            driven = self._drive(problem, seed, trial, limit)
             row = drive_row(batch, trial, driven, optimum)
             events = partial(drive_events, driven, problem.map.cols, seed, trial)
             yield Trial(row, row.reached, len(driven.frames), events)
@@ -199,22 +217,26 @@ class Task:
         """Sum drives up for the terminal: label -> value."""
         if len(rows) == 1:
             row = rows[0]
+            shortest = "no way to the target"
+            if not math.isnan(row.shortest_steps):
+                shortest = f"{row.shortest_steps:g} steps possible"
+            ratio = {} if math.isnan(row.steps_ratio) else {"ratio": f"{row.steps_ratio:.3g}"}
             return {
                 "seed": row.seed,
-                "outcome": row.outcome,
+                "outcome": row.outcome + self._remark(rows),
                 "steps": row.steps,
-                "shortest": f"{row.shortest_steps:g} steps possible",
-                "ratio": f"{row.steps_ratio:.3g}" if row.reached else "-",
+                "shortest": shortest,
+                **ratio,
                 "GA calls": f"{row.ga_calls} (A {row.calls_a}, B {row.calls_b}, C {row.calls_c})",
                 "replans": row.replans,
                 "returns": row.returns,
                 "time": _median_time(rows),
             }
         lines: dict[str, object] = {"drives": len(rows)}
-        for outcome in Outcome:
-            count = sum(row.outcome == outcome.name.lower() for row in rows)
-            lines[outcome.name.lower()] = f"{count} ({100 * count / len(rows):.1f} %)"
-        ratios = [row.steps_ratio for row in rows if row.reached]
+        for name, these in _by_outcome(rows).items():
+            share = f"{len(these)} ({100 * len(these) / len(rows):.1f} %)"
+            lines[name] = f"{share}{self._remark(these)}"
+        ratios = [row.steps_ratio for row in rows if not math.isnan(row.steps_ratio)]
         if ratios:
             lines["median ratio"] = f"{statistics.median(ratios):.3g} of the shortest possible"
         lines["median calls"] = f"{statistics.median(row.ga_calls for row in rows):g}"
@@ -223,8 +245,25 @@ class Task:
 
     def line(self, rows: list[DriveRow]) -> str:
         """Sum drives up in one line."""
-        reached = sum(row.reached for row in rows)
-        return f"{reached} of {len(rows)} reached the target, median {_median_time(rows)}"
+        if len(rows) == 1:
+            return (
+                f"{rows[0].outcome}{self._remark(rows)}, {rows[0].steps} steps, "
+                f"{_median_time(rows)}"
+            )
+        ends = [
+            f"{len(these)} {name}{self._remark(these)}"
+            for name, these in _by_outcome(rows).items()
+            if these
+        ]
+        return f"{len(rows)} drives: {', '.join(ends)}; median {_median_time(rows)}"
+
+    def _remark(self, rows: list[DriveRow]) -> str:
+        """Say what an outcome alone does not, of drives that ended alike."""
+        if any(row.outcome == Outcome.OVERRAN.name.lower() for row in rows):
+            rule = "" if self.step_limit else f", {STEPS_RULE}"
+            return f" (drive.step_limit: {rows[0].steps}{rule})"
+        stayed = sum(row.never_left for row in rows)
+        return f" ({f'{stayed} ' if len(rows) > 1 else ''}{NEVER_LEFT})" if stayed else ""
 
     def _drive(self, problem: Problem, seed: int, trial: int, step_limit: int) -> Drive:
         return drive(
@@ -236,8 +275,30 @@ class Task:
             trial,
             step_limit,
             self.unknown_weight,
-            self.before,
+            problem.maps.get(KNOWN),
         )
+
+
+def usual_limit(fields: int) -> int:
+    """Give the step limit of a map on which none is set.
+
+    Parameters
+    ----------
+    fields : int
+        Fields of the map.
+
+    Returns
+    -------
+    int
+        Two steps for every five fields, which are KG18's 2000 on its maps (Sec. 6.4), as on
+        smaller ones; at most `MOST_STEPS`.
+    """
+    return min(max(LEAST_STEPS, 2 * fields // 5), MOST_STEPS)
+
+
+def _by_outcome(rows: list[DriveRow]) -> dict[str, list[DriveRow]]:
+    names = [outcome.name.lower() for outcome in Outcome]
+    return {name: [row for row in rows if row.outcome == name] for name in names}
 
 
 def _median_time(rows: list[DriveRow]) -> str:
@@ -262,9 +323,9 @@ def read_known_map(path: str) -> GridMap:
     InputError
         If the file cannot be used.
     """
-    kind = reader_of(path, "drive.known_map")
+    kind = reader_of(path, KNOWN)
     values = yaml_values("map", kind) | {"path": path}
     if "unknown" in values:
         values["unknown"] = "free"
-    grid: GridMap = build("map", values, "drive.known_map").read()
+    grid: GridMap = build("map", values, KNOWN).read()
     return grid

@@ -11,6 +11,7 @@ from typing import Any, ClassVar, Self, cast
 from gapath.components import build
 from gapath.errors import require
 from gapath.events import Event, Evolved, RunStarted, Surveyed, TrialFinished, TrialStarted
+from gapath.grid import GridMap
 from gapath.planning.path import octile_length
 from gapath.planning.shortest_path import shortest_path
 from gapath.planning.simulation import TimedPlan, plan_trials
@@ -68,6 +69,10 @@ class Task:
     def make(cls, settings: Mapping[str, Any]) -> Self:
         """Make it from nested settings; raises InputError."""
         return cls(build("planner", settings["planner"], "planner"))
+
+    def read(self) -> Mapping[str, GridMap]:
+        """Read nothing: it needs the map alone."""
+        return {}
 
     @staticmethod
     def told_optimum(run: RunStarted) -> dict[str, str]:

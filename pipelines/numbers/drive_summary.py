@@ -9,6 +9,7 @@ from gapath.pipelines.numbers.summary import spread
 from gapath.pipelines.numbers.text import percent, percent_range
 
 OUTCOMES = tuple(outcome.name.lower() for outcome in Outcome)
+RETURNED = Outcome.RETURNED.name.lower()
 
 _SPREADS = {
     "steps": "steps",
@@ -33,7 +34,8 @@ def summarise_drives(drives: pd.DataFrame) -> dict[str, float]:
     Returns
     -------
     dict
-        n; for each outcome its count, rate and interval; the mean number of planner calls by
+        n; for each outcome its count, rate and interval; never_left, how many returned without
+        having gone anywhere; the mean number of planner calls by
         part; for steps, steps_ratio, replans and seconds the fields of `summary.Spread`.
     """
     n = len(drives)
@@ -43,6 +45,8 @@ def summarise_drives(drives: pd.DataFrame) -> dict[str, float]:
         low, high = (np.nan, np.nan) if _repeats(drives) else wilson(count / n, n)
         row |= {outcome: count, f"{outcome}_rate": count / n}
         row |= {f"{outcome}_low": low, f"{outcome}_high": high}
+    stayed = (drives["outcome"] == RETURNED) & (drives["stands"] == drives["steps"])
+    row["never_left"] = int(stayed.sum())
     row |= {f"calls_{part}": drives[f"calls_{part}"].mean() for part in "abc"}
     for name, column in _SPREADS.items():
         row |= {f"{name}_{key}": value for key, value in spread(drives[column])._asdict().items()}
@@ -50,10 +54,12 @@ def summarise_drives(drives: pd.DataFrame) -> dict[str, float]:
 
 
 def rate(row: pd.Series, outcome: str) -> str:
-    """Write a rate in percent with its interval."""
+    """Write a rate in percent with its interval, and how many that returned never left."""
     interval = percent_range((row[f"{outcome}_low"], row[f"{outcome}_high"]))
     known = not np.isnan(row[f"{outcome}_low"])
-    return percent(row[f"{outcome}_rate"]) + (f" ({interval})" if known else "")
+    text = percent(row[f"{outcome}_rate"]) + (f" ({interval})" if known else "")
+    never = outcome == RETURNED and row["never_left"]
+    return text + (f"; {row['never_left']:.0f} never left" if never else "")
 
 
 def _repeats(drives: pd.DataFrame) -> bool:

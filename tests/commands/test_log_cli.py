@@ -13,6 +13,7 @@ import pytest
 from gapath.commands import log as log_cli
 from gapath.events import (
     DriveFinished,
+    DriveStarted,
     Evolved,
     Mode,
     Outcome,
@@ -51,20 +52,20 @@ def drive_events(seconds=1e-4):
     """Give the events of two drives on an empty map; the second one overruns."""
     grid = GridMap("leer", np.full((4, 6), 0.5))
     path = np.array([[0, 0], [1, 1]], dtype=np.int32)
-    settings = {"task": "drive", "drive.sensor.range": 1, "drive.unknown_weight": 0.5}
     yield RunStarted(
-        "drives", "kg18", "drive", Problem(grid, (0, 0), (1, 1)), 7, 2, settings,
+        "drives", "kg18", "drive", Problem(grid, (0, 0), (1, 1)), 7, 2, {"task": "drive"},
         {"gapath": "0.1.0"}, path, 1.0,
     )  # fmt: skip
     fields, entries = path[1:], np.array([1 << 15], dtype=np.int32)
     for trial in range(2):
         step = 2 * trial
         yield TrialStarted(step, trial, 7)
+        yield DriveStarted(step, trial, 1, 0.5, 1)
         yield Stepped(step, trial, (0, 0), 1, Mode.EXPLORE, fields, entries, seconds)
         yield Stepped(
             step + 1, trial, (1 - trial,) * 2, 1, Mode.EXPLORE, fields[:0], entries[:0], seconds
         )
-        yield DriveFinished(step + 1, trial, Outcome(2 * trial), 1)
+        yield DriveFinished(step + 1, trial, Outcome(2 * trial), 1, trial)
     yield RunFinished(4, 2, 1)
 
 

@@ -1,3 +1,4 @@
+import math
 import os
 from dataclasses import replace
 from pathlib import Path
@@ -102,6 +103,9 @@ def test_scenario_gives_start_and_target(tmp_path):
     first, second = reader.read(), replace(reader, problem=1, target=[2, 0]).read()
     assert (first.start, first.target) == ((2, 0), (6, 1))
     assert (second.start, second.target) == ((0, 0), (2, 0))
+    assert first.published_length == 4.41421356
+    assert math.isnan(second.published_length)  # it is another problem's
+    assert math.isnan(replace(READER, path=path).read().published_length)
 
 
 def test_scenario_rows(tmp_path):

@@ -195,8 +195,7 @@ def write_drive_log(folder: Path, grid: GridMap, drives: pd.DataFrame) -> None:
                 )
             )  # fmt: skip
             step += 1
-        recorder.record(
-            DriveFinished(step - 1, row.trial, Outcome(int(not row.reached)), len(path) - 1)
-        )
+        ended = Outcome(int(not row.reached))
+        recorder.record(DriveFinished(step - 1, row.trial, ended, len(path) - 1, row.stands))
     recorder.record(RunFinished(step, len(drives), int(drives["reached"].sum())))
     recorder.close()

@@ -11,7 +11,7 @@ from gapath.pipelines.kg18.drives import table as table_drives
 from gapath.pipelines.kg18.drives import table_calls as table_drive_calls
 from gapath.pipelines.kg18.drives import table_choices as table_drive_choices
 from gapath.pipelines.kg18.drives import table_classes as table_drive_classes
-from gapath.pipelines.numbers.drive_summary import summarise_drives
+from gapath.pipelines.numbers.drive_summary import rate, summarise_drives
 from gapath.pipelines.numbers.statistics import wilson
 from gapath.pipelines.numbers.summary import over_instances
 from gapath.pipelines.reading.collect import collect
@@ -47,7 +47,8 @@ def drives_of(**columns):
     defaults = {
         "map": "kg18_map4", "map_source": "array", "map_instance": 0, "navigator": "kg18",
         "outcome": "reached", "reached": True, "steps": 100, "steps_ratio": 1.0, "replans": 1,
-        "calls_a": 0, "calls_b": 0, "calls_c": 1, "evaluations": 10, "compute_time_s": 0.5,
+        "calls_a": 0, "calls_b": 0, "calls_c": 1, "stands": 0, "evaluations": 10,
+        "compute_time_s": 0.5,
     }  # fmt: skip
     frame = pd.DataFrame(columns)
     return frame.assign(**{k: v for k, v in defaults.items() if k not in frame})
@@ -103,6 +104,17 @@ def test_a_summary_worked_by_hand():
     assert row["steps_median"] == 110  # failures count
     assert row["steps_ratio_median"] == pytest.approx(1.1)
     assert row["calls_a"] == 3
+    assert row["never_left"] == 0
+
+
+def test_drives_that_never_left_are_told():
+    drives = drives_of(
+        outcome=["returned"] * 3 + ["reached"], steps=[4, 1, 9, 5], stands=[4, 1, 8, 5]
+    )
+    row = summarise_drives(drives)
+    assert row["never_left"] == 2
+    assert rate(row, "returned").endswith("; 2 never left")
+    assert "never left" not in rate(row, "reached") + rate(row, "overran")
 
 
 def test_who_draws_no_random_number_has_no_interval():

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gapath.driving.drive import Drive, Leg
+from gapath.driving.drive import Drive, Leg, Sensor
 from gapath.driving.known_map import Looks
 from gapath.driving.navigation import Call, Decision
 from gapath.driving.told import drive_events
@@ -100,12 +100,7 @@ def example_drives(trials=2):
     return events
 
 
-SETTINGS = {
-    "task": "drive",
-    "drive.sensor.range": 1,
-    "drive.sensor.occlusion": False,
-    "drive.unknown_weight": 0.5,
-}
+SETTINGS = {"task": "drive", "navigator.kind": "kg18"}  # readers take what they need from events
 
 
 def _drive(grid, trial):
@@ -141,7 +136,8 @@ def _drive(grid, trial):
         entries = grid.table.ravel()[news]
         looks = Looks([heading % 8], [len(news)], np.stack([news, entries]))
         legs.append(Leg(decision, looks, (place,), 1e-5 * (heading + 1)))
-    return Drive(Outcome.REACHED if trial == 0 else Outcome.OVERRAN, legs, 1e-3)
+    outcome = Outcome.REACHED if trial == 0 else Outcome.OVERRAN
+    return Drive(Sensor(1, False), 100, 0.5, outcome, legs, 1e-3)
 
 
 def logged(event):

@@ -11,7 +11,17 @@ from log_events import example_drives, logged
 from matplotlib.path import Path as Polygon
 from recordings import centres, read, record, rerun_command
 
-from gapath.events import Called, DriveFinished, Mode, Outcome, PathsChanged, Stepped, TrialStarted
+from gapath.events import (
+    NEVER_LEFT,
+    Called,
+    DriveFinished,
+    DriveStarted,
+    Mode,
+    Outcome,
+    PathsChanged,
+    Stepped,
+    TrialStarted,
+)
 from gapath.grid import GridMap
 from gapath.kernels.field_of_view import HEADING_X, HEADING_Y, sense
 from gapath.problem import Answer, PlanStatus, Problem
@@ -167,7 +177,7 @@ def test_text(found):
     text = found["/text", "TextDocument:text"][0]
     for part in ("kg18 on", "The robot reached the target", "| outcome | reached |",
                  "| steps | 10 |", "| calls of part C | 3 |", "| seed, trial | 7, 0 |",
-                 "unknown_weight: 0.5"):  # fmt: skip
+                 "navigator.kind: "):  # fmt: skip
         assert part in text
 
 
@@ -175,12 +185,15 @@ def test_a_drive_that_knows_no_way_and_never_calls(tmp_path, events):
     run, nothing = events[0], np.empty((0, 2), dtype=np.int32)
     first = dataclasses.replace(of(events, Stepped)[0], seconds=math.nan)
     enclosed = dataclasses.replace(run, optimal_path=nothing, optimal_cost=math.inf)
-    record(
-        tmp_path, [enclosed, TrialStarted(0, 0, 7), first, DriveFinished(0, 0, Outcome.OVERRAN, 0)]
-    )
+    start, end = DriveStarted(0, 0, 1, 0.5, 100), DriveFinished(0, 0, Outcome.OVERRAN, 0, 0)
+    record(tmp_path, [enclosed, TrialStarted(0, 0, 7), start, first, end])
     found = read(tmp_path / "trial-0.rrd")
     assert "| shortest | no way |" in found["/text", "TextDocument:text"][0]
     assert "The robot used up its steps" in found["/text", "TextDocument:text"][0]
+    stayed = DriveFinished(0, 0, Outcome.RETURNED, 3, 3)
+    record(tmp_path, [enclosed, TrialStarted(0, 0, 7), start, first, stayed])
+    text = read(tmp_path / "trial-0.rrd")["/text", "TextDocument:text"][0]
+    assert f"The robot {NEVER_LEFT}" in text
 
 
 def test_the_files_are_verified_and_equal_for_equal_events(tmp_path, events):
@@ -209,6 +222,7 @@ def long_drive(steps=500):
     run = dataclasses.replace(example_drives(1)[0], problem=Problem(grid, (0, 0), (99, 49)))
     yield run
     yield TrialStarted(0, 0, 7)
+    yield DriveStarted(0, 0, 1, 0.5, 2000)
     for step in range(steps):
         x, y = int(50 + 40 * math.cos(step / 80)), int(25 + 20 * math.sin(step / 50))
         if step % 4 == 0:
@@ -221,7 +235,7 @@ def long_drive(steps=500):
         fields = np.array([[x + i - 3, y + j - 3] for i in range(4) for j in range(4)], np.int32)
         entries = grid.table[fields[:, 1], fields[:, 0]]
         yield Stepped(step, 0, (x, y), step % 8, Mode(step // 9 % 3), fields, entries, 1e-4)
-    yield DriveFinished(steps - 1, 0, Outcome.REACHED, steps - 1)
+    yield DriveFinished(steps - 1, 0, Outcome.REACHED, steps - 1, 0)
 
 
 def test_long_drives_are_small_and_quick(tmp_path):

@@ -14,6 +14,7 @@ from gapath.errors import InputError
 from gapath.events import (
     Called,
     DriveFinished,
+    DriveStarted,
     Evolved,
     Mode,
     Outcome,
@@ -99,6 +100,8 @@ VALUES = st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) 
 
 def drives(draw, grid, step, trial):
     """Give the events of a drive between its start and its end."""
+    few, weights = st.integers(0, 2**32 - 1), st.floats()
+    yield DriveStarted(step, trial, draw(few), draw(weights), draw(few))
     places = st.tuples(st.integers(0, grid.cols - 1), st.integers(0, grid.rows - 1))
     part, heading = st.sampled_from("ABC"), st.integers(0, 7)
     for i in range(draw(st.integers(0, 3))):
@@ -140,7 +143,8 @@ def runs(draw):
         events.append(TrialStarted(step, trial, draw(counts)))
         if task == "drive":
             events += drives(draw, grid, step, trial)
-            events.append(DriveFinished(step, trial, draw(st.sampled_from(Outcome)), draw(counts)))
+            ended = draw(st.sampled_from(Outcome))
+            events.append(DriveFinished(step, trial, ended, draw(counts), draw(counts)))
             continue
         if draw(st.booleans()):
             events.append(Surveyed(step, trial, draw(graphs())))

@@ -159,10 +159,10 @@ BAD = {
     "no metadata": (lambda path, log: foreign(path), "a run's description"),
     "version": (
         lambda path, log: foreign(path, metadata={"gapath_log_version": "99"}),
-        "gapath_log_version: got 99, expected 3",
+        "gapath_log_version: got 99, expected 4",
     ),
     "entries missing": (
-        lambda path, log: foreign(path, metadata={"gapath_log_version": "3"}),
+        lambda path, log: foreign(path, metadata={"gapath_log_version": "4"}),
         "KeyError",
     ),
 }

@@ -174,13 +174,13 @@ def test_large_known_maps_are_shown_less_often(tmp_path):
         fields = np.array([[step, 1]], dtype=np.int32)
         entries = np.array([1 << 15], dtype=np.int32)
         events.append(Stepped(step, 0, (0, 0), 0, Mode.EXPLORE, fields, entries, 0.0))
-    events.append(DriveFinished(9, 0, Outcome.OVERRAN, 9))
+    events.append(DriveFinished(9, 0, Outcome.OVERRAN, 9, 9))
     shown = decoded(write(events, tmp_path))["/known_map"]
     assert [step for step, _ in shown] == [0, 4, 8, 9]
     assert [np.count_nonzero(np.array(known.data) == 50) for _, known in shown] == [3, 7, 11, 12]
 
 
-@pytest.mark.parametrize(("topics", "events"), [(11, example), (15, example_drives)])
+@pytest.mark.parametrize(("topics", "events"), [(11, example), (16, example_drives)])
 def test_rerun_accepts_it(topics, events, tmp_path):
     checked = subprocess.run(
         [sys.executable, "-m", "rerun_cli", "mcap", "check", "--full", write(events(), tmp_path)],

@@ -36,6 +36,7 @@ from gapath.runs.experiment import execute, run_started
 from gapath.runs.naming import Method
 from gapath.store.settings import flatten
 from gapath.tasks.drive import Task as DriveTask
+from gapath.tasks.drive import usual_limit
 
 MAPS = ("kg18_map1", "kg18_map2", "kg18_map3", "kg18_map4")
 NAVIGATORS = ("kg18", "kg18_fast", "kg18_astar", "replan_astar", "dstar_lite", "straight_astar")
@@ -79,7 +80,8 @@ def task_of(run: Run) -> DriveTask:
 
 def drive_once(task: DriveTask, problem: Problem, trial: int) -> Drive:
     """Drive as a trial of seed 0 does."""
-    limits = (task.step_limit, task.unknown_weight)
+    limit = task.step_limit or usual_limit(problem.map.rows * problem.map.cols)
+    limits = (limit, task.unknown_weight)
     return drive(problem, task.navigator, task.sensor, task.changes, 0, trial, *limits)
 
 

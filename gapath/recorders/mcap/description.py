@@ -7,6 +7,7 @@ import hashlib
 import io
 import json
 from collections.abc import Iterable, Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,14 +18,17 @@ from gapath.grid import Field, GridMap
 from gapath.problem import CornerCutting, Problem
 from gapath.store.settings import of_text, text_of
 
-LOG_VERSION = "3"
+LOG_VERSION = "4"
 """Raised whenever an older reader would misread a log."""
 
 NAME = "gapath"
 """Name of the metadata record."""
 
-MAP, OPTIMAL_PATH = "map.npy", "optimal_path.npy"
-"""Names of the attachments, in the order of the file."""
+OPTIMAL_PATH = "optimal_path.npy"
+"""Name of the last attachment; the maps lie before it."""
+
+_MAP = "map"  # the name of the map itself; those of `Problem.maps` are named after their settings
+_NPY = ".npy"
 
 _VERSION_OF = "version/"  # before the names of packages
 
@@ -40,9 +44,9 @@ def metadata(run: RunStarted) -> dict[str, str]:
     Returns
     -------
     dict of str to str
-        Ends with ``sha256``, the digest of the other entries and both attachments.
+        Ends with ``sha256``, the digest of the other entries and all attachments.
     """
-    problem, grid = run.problem, run.problem.map
+    problem = run.problem
     text = {
         "gapath_log_version": LOG_VERSION,
         "experiment": run.experiment,
@@ -54,24 +58,37 @@ def metadata(run: RunStarted) -> dict[str, str]:
         "target": _numbers(problem.target),
         "corner_cutting": problem.corner_cutting.name,
         "optimal_cost": repr(float(run.optimal_cost)),
-        "map_name": grid.name,
-        "map_source": grid.source,
-        "map_instance": str(grid.instance),
-        "map_resolution": repr(float(grid.resolution)),
-        "map_origin": _numbers(map(float, grid.origin)),
-        "map_start": _numbers(grid.start or ()),
-        "map_target": _numbers(grid.target or ()),
+        "maps": json.dumps(list(problem.maps)),
         "settings": text_of(run.settings),
-    } | {_VERSION_OF + name: version for name, version in run.versions.items()}
+    }
+    for name, grid in _all_maps(problem).items():
+        text |= _map_text(name, grid)
+    text |= {_VERSION_OF + name: version for name, version in run.versions.items()}
     return text | {"sha256": _digest(text, attachments(run))}
+
+
+def _all_maps(problem: Problem) -> dict[str, GridMap]:
+    return {_MAP: problem.map, **problem.maps}
+
+
+def _map_text(name: str, grid: GridMap) -> dict[str, str]:
+    """Describe a map, all but its weights."""
+    return {
+        f"{name}_name": grid.name,
+        f"{name}_source": grid.source,
+        f"{name}_instance": str(grid.instance),
+        f"{name}_resolution": repr(float(grid.resolution)),
+        f"{name}_origin": _numbers(map(float, grid.origin)),
+        f"{name}_start": _numbers(grid.start or ()),
+        f"{name}_target": _numbers(grid.target or ()),
+    }
 
 
 def attachments(run: RunStarted) -> dict[str, bytes]:
     """Give a run's arrays as ``.npy`` files, by name."""
-    return {
-        MAP: _npy(run.problem.map.weights, "<f8"),
-        OPTIMAL_PATH: _npy(run.optimal_path, "<i4"),
-    }
+    maps = _all_maps(run.problem).items()
+    weights = {name + _NPY: _npy(grid.weights, "<f8") for name, grid in maps}
+    return weights | {OPTIMAL_PATH: _npy(run.optimal_path, "<i4")}
 
 
 def run_started(text: Mapping[str, str], files: Mapping[str, bytes]) -> RunStarted:
@@ -101,26 +118,16 @@ def run_started(text: Mapping[str, str], files: Mapping[str, bytes]) -> RunStart
     written = dict(text)
     digest = written.pop("sha256")
     require(_digest(written, files) == digest, "sha256", digest, "the digest of what is there")
-    x, y, yaw = map(float, text["map_origin"].split())
-    grid = GridMap(
-        name=text["map_name"],
-        weights=np.load(io.BytesIO(files[MAP]), allow_pickle=False),
-        start=_field(text["map_start"]) if text["map_start"] else None,
-        target=_field(text["map_target"]) if text["map_target"] else None,
-        instance=int(text["map_instance"]),
-        source=text["map_source"],
-        resolution=float(text["map_resolution"]),
-        origin=(x, y, yaw),
-    )
     return RunStarted(
         experiment=text["experiment"],
         method=text["method"],
         task=text["task"],
         problem=Problem(
-            grid,
+            _grid_map(_MAP, text, files),
             _field(text["start"]),
             _field(text["target"]),
             CornerCutting[text["corner_cutting"]],
+            {name: _grid_map(name, text, files) for name in json.loads(text["maps"])},
         ),
         seed=int(text["seed"]),
         trials=int(text["trials"]),
@@ -130,8 +137,23 @@ def run_started(text: Mapping[str, str], files: Mapping[str, bytes]) -> RunStart
             for name, version in text.items()
             if name.startswith(_VERSION_OF)
         },
-        optimal_path=np.load(io.BytesIO(files[OPTIMAL_PATH]), allow_pickle=False),
+        optimal_path=_array(files[OPTIMAL_PATH]),
         optimal_cost=float(text["optimal_cost"]),
+    )
+
+
+def _grid_map(name: str, text: Mapping[str, str], files: Mapping[str, bytes]) -> GridMap:
+    x, y, yaw = map(float, text[f"{name}_origin"].split())
+    start, target = text[f"{name}_start"], text[f"{name}_target"]
+    return GridMap(
+        name=text[f"{name}_name"],
+        weights=_array(files[name + _NPY]),
+        start=_field(start) if start else None,
+        target=_field(target) if target else None,
+        instance=int(text[f"{name}_instance"]),
+        source=text[f"{name}_source"],
+        resolution=float(text[f"{name}_resolution"]),
+        origin=(x, y, yaw),
     )
 
 
@@ -150,8 +172,13 @@ def _npy(array: NDArray[np.generic], dtype: str) -> bytes:
     return file.getvalue()
 
 
+def _array(file: bytes) -> NDArray[Any]:
+    array: NDArray[Any] = np.load(io.BytesIO(file), allow_pickle=False)
+    return array
+
+
 def _digest(text: Mapping[str, str], files: Mapping[str, bytes]) -> str:
     sha = hashlib.sha256(json.dumps(text, sort_keys=True).encode())
-    for name in (MAP, OPTIMAL_PATH):
-        sha.update(files[name])
+    for name in sorted(files):
+        sha.update(name.encode() + b"\0" + files[name])
     return sha.hexdigest()

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from gapath.events import (
     Called,
     DriveFinished,
+    DriveStarted,
     Event,
     Mode,
     Outcome,
@@ -44,7 +45,8 @@ _INT32 = np.dtype("<i4")
 _STEP = struct.Struct("<QiiBB2x")  # padded for the count that follows
 _CALL = struct.Struct("<QQQQQdddIB?2x")
 _TRIAL = struct.Struct("<Q")
-_END = struct.Struct("<QQB")
+_BEGIN = struct.Struct("<QdII")
+_END = struct.Struct("<QQQB")
 
 
 def _turns() -> list[tuple[float, float]]:
@@ -88,6 +90,11 @@ class DriveMessages:
         self._shown = -self._every
         self._mode = Mode.EXPLORE
 
+    def started(self, event: DriveStarted) -> Iterator[Record]:
+        """Log what the robot can do."""
+        able = (event.unknown_weight, event.sensor_range, event.step_limit)
+        yield Record("/drive_start", event.step, ENCAPSULATION + _BEGIN.pack(event.trial, *able))
+
     def stepped(self, event: Stepped) -> Iterator[Record]:
         """Log a step: the known map if it changed, the pose, all of it exactly."""
         step, fields = event.step, event.fields
@@ -128,10 +135,9 @@ class DriveMessages:
         """Log the end of a drive, and what it knew then."""
         if self._news:
             yield self._known_map(event.step)
-        outcome = event.outcome.name.lower()
-        text = f"trial {event.trial}: {outcome} after {event.steps} steps"
+        text = f"trial {event.trial}: {event.ending} after {event.steps} steps"
         yield log_record(event.step, INFO if event.outcome is Outcome.REACHED else WARN, text)
-        data = ENCAPSULATION + _END.pack(event.trial, event.steps, event.outcome)
+        data = ENCAPSULATION + _END.pack(event.trial, event.steps, event.stands, event.outcome)
         yield Record("/drive_end", event.step, data)
 
 
@@ -152,9 +158,14 @@ def _read_call(step: int, m: Any) -> Called:
 
 
 READERS: dict[str, Callable[[int, Any], Event]] = {
+    "/drive_start": lambda step, m: DriveStarted(
+        step, m.trial, m.sensor_range, m.unknown_weight, m.step_limit
+    ),
     "/drive_step": _read_step,
     "/planner_call": _read_call,
     "/paths": lambda step, m: PathsChanged(step, m.trial, _pairs(m.path), _pairs(m.past)),
-    "/drive_end": lambda step, m: DriveFinished(step, m.trial, Outcome(m.outcome), m.steps),
+    "/drive_end": lambda step, m: DriveFinished(
+        step, m.trial, Outcome(m.outcome), m.steps, m.stands
+    ),
 }
 """What turns a message of a drive back into its event, by topic."""

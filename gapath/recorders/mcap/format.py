@@ -68,6 +68,13 @@ uint8 status
 bool feasible             # status is FOUND
 int32[] path              # x, y, x, y, ... [fields]; empty without a path
 """,
+    "gapath_msgs/msg/DriveStart": """\
+# A trial is a drive: what its robot can do.
+uint64 trial
+float64 unknown_weight    # what it takes an unknown field to cost
+uint32 sensor_range       # layers of the triangle that it sees
+uint32 step_limit         # steps after which it has overrun
+""",
     "gapath_msgs/msg/DriveStep": """\
 # A robot looked around and moved, or stood (the first look of a drive: stood).
 uint8 EXPLORE=0
@@ -113,6 +120,7 @@ uint8 RETURNED=1
 uint8 OVERRAN=2
 uint64 trial
 uint64 steps
+uint64 stands             # in how many of them it stood
 uint8 outcome
 """,
     "gapath_msgs/msg/RunEnd": """\
@@ -138,6 +146,7 @@ TOPICS = {
     "/pose": "geometry_msgs/msg/PoseStamped",
     "/current_path": "nav_msgs/msg/Path",
     "/past_path": "nav_msgs/msg/Path",
+    "/drive_start": "gapath_msgs/msg/DriveStart",
     "/drive_step": "gapath_msgs/msg/DriveStep",
     "/planner_call": "gapath_msgs/msg/PlannerCall",
     "/paths": "gapath_msgs/msg/Paths",

@@ -10,6 +10,7 @@ from gapath.errors import require
 from gapath.events import (
     Called,
     DriveFinished,
+    DriveStarted,
     Event,
     Evolved,
     PathsChanged,
@@ -92,6 +93,8 @@ class Messages:
                 yield record("/graph", step, trial, *obstacles.shape, block, *fields)
             case TrialFinished():
                 yield from _trial_finished(event, self._run.problem.map)
+            case DriveStarted():
+                yield from self._drive.started(event)
             case Stepped():
                 yield from self._drive.stepped(event)
             case Called():

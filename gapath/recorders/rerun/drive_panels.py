@@ -3,7 +3,15 @@
 import rerun as rr
 import rerun.blueprint as rrb
 
-from gapath.events import Called, DriveFinished, Outcome, RunStarted, TrialStarted
+from gapath.events import (
+    NEVER_LEFT,
+    Called,
+    DriveFinished,
+    DriveStarted,
+    Outcome,
+    RunStarted,
+    TrialStarted,
+)
 from gapath.grid import GridMap
 from gapath.recorders.rerun.drawing import blueprint, document, map_view, problem_rows
 
@@ -15,7 +23,11 @@ _SENTENCES = {
 
 
 def text(
-    run: RunStarted, trial: TrialStarted, calls: list[Called], finished: DriveFinished
+    run: RunStarted,
+    trial: TrialStarted,
+    able: DriveStarted,
+    calls: list[Called],
+    finished: DriveFinished,
 ) -> rr.TextDocument:
     """Write the panel of settings and outcome."""
     parts = [call.part for call in calls]
@@ -24,6 +36,7 @@ def text(
     rows = {
         "outcome": outcome.name.lower(),
         "steps": finished.steps,
+        "step limit": able.step_limit,
         "shortest": f"{shortest} steps" if shortest >= 0 else "no way",
         **{f"calls of part {part}": parts.count(part) for part in sorted(set(parts))},
         **problem_rows(run, trial),
@@ -38,7 +51,8 @@ def text(
         "- **map**: greys are known, the brighter, the dearer; white: obstacle; "
         "dark blue is unknown\n"
     )
-    return document(run, _SENTENCES[outcome], rows, legend)
+    sentence = f"The robot {NEVER_LEFT}" if finished.never_left else _SENTENCES[outcome]
+    return document(run, sentence, rows, legend)
 
 
 def layout(grid: GridMap, timeline: str, timed: bool) -> rrb.Blueprint:

@@ -1,6 +1,6 @@
 """What a Rerun recording of a drive shows: two maps, the robot, paths, modes, curves."""
 
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 import rerun as rr
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from gapath.events import (
     Called,
     DriveFinished,
+    DriveStarted,
     Event,
     Mode,
     PathsChanged,
@@ -53,6 +54,7 @@ class _Drive(NamedTuple):
 
     run: RunStarted
     trial: TrialStarted
+    able: DriveStarted
     steps: list[Stepped]
     calls: list[Called]
     changes: list[PathsChanged]
@@ -70,7 +72,7 @@ def recording(run: RunStarted, events: list[Event]) -> bytes:
     run : RunStarted
         What the run's trials share.
     events : list of Event
-        The drive's, from its `TrialStarted` to its `DriveFinished`.
+        The drive's, from its `TrialStarted` to its `DriveFinished`, a `DriveStarted` among them.
 
     Returns
     -------
@@ -80,10 +82,11 @@ def recording(run: RunStarted, events: list[Event]) -> bytes:
     """
     trial, finished = events[0], events[-1]
     assert isinstance(trial, TrialStarted) and isinstance(finished, DriveFinished)
+    (able,) = (event for event in events if isinstance(event, DriveStarted))
     steps = [event for event in events if isinstance(event, Stepped)]
     calls = [event for event in events if isinstance(event, Called)]
     changes = [event for event in events if isinstance(event, PathsChanged)]
-    drive = _Drive(run, trial, steps, calls, changes, finished)
+    drive = _Drive(run, trial, able, steps, calls, changes, finished)
     timed = not all(np.isnan(step.seconds) for step in steps)
     stream = new_stream(run, trial)
     memory = stream.memory_recording()
@@ -92,18 +95,17 @@ def recording(run: RunStarted, events: list[Event]) -> bytes:
     _log_true_map(stream, run.problem.map)
     log_problem(stream, run, 2)
     _send_known_map(stream, drive)
-    _send_robot(stream, drive, cast(int, run.settings["drive.sensor.range"]))
+    _send_robot(stream, drive, able.sensor_range)
     _send_paths(stream, drive)
     _send_calls(stream, drive)
     _send_modes(stream, drive)
     time = [rr.TimeColumn(TIMELINE, sequence=drive.time(steps))]
-    unknown = cast(float, run.settings["drive.unknown_weight"])
-    left = _cost_left(run, events, unknown)
+    left = _cost_left(run, events, able.unknown_weight)
     send_curve(stream, "cost/left", time, left, "cost left", ORANGE)
     if timed:
         seconds = np.array([step.seconds for step in steps])
         send_curve(stream, "time/step", time, 1000 * seconds, "milliseconds", GREY)
-    stream.log("text", text(run, trial, calls, finished), static=True)
+    stream.log("text", text(run, trial, able, calls, finished), static=True)
     content: bytes = memory.drain_as_bytes()
     stream.disconnect()
     return content

@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Self
 from gapath.components import build
 from gapath.errors import InputError
 from gapath.events import Event, RunStarted, TrialFinished, TrialStarted
+from gapath.grid import GridMap
 from gapath.kernels.rng import stream
 from gapath.planning.shortest_path import shortest_path
 from gapath.problem import Plan, Planner, Problem
@@ -52,6 +53,10 @@ class Task:
     def make(cls, settings: Mapping[str, Any]) -> Self:
         """Make it from nested settings; raises InputError."""
         return cls(build("planner", settings["planner"], "planner"))
+
+    def read(self) -> Mapping[str, GridMap]:
+        """Read nothing: it needs the map alone."""
+        return {}
 
     @staticmethod
     def told_optimum(run: RunStarted) -> dict[str, str]:
