@@ -13,6 +13,7 @@ from gapath.discovery import kinds
 from gapath.errors import require
 from gapath.events import Recorder, Settings
 from gapath.grid import GridMap
+from gapath.planning.acceleration import with_kernels
 from gapath.problem import CornerCutting, Problem
 from gapath.runs.naming import Method, map_name, method_of
 from gapath.store.inputs import Inputs, watched
@@ -43,7 +44,7 @@ class Root:
     threads : int
         Threads that do the trials of a run, if the task has any use for them.
     kernels : str
-        Which kernels compute: "auto", or a name that the task's planner knows.
+        Which kernels compute: "auto", or a name that one of the task's planners knows.
     """
 
     task: str
@@ -161,9 +162,7 @@ def make_run(config: DictConfig, choices: Mapping[str, str | None]) -> Run:
     with watched() as map_inputs:
         problem = read_problem(root)
     with watched() as method_inputs:
-        made = task.make(settings)
-    if root.kernels != "auto":
-        made = made.using(root.kernels)
+        made = with_kernels(task.make(settings), root.kernels)
     made.check(problem)
     columns(task.row)  # a package's wrong metric is refused before anything is written
     for recorder in recorders:

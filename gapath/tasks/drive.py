@@ -15,7 +15,7 @@ from gapath.driving.navigation import Navigator
 from gapath.driving.row import DriveRow, drive_row
 from gapath.driving.told import drive_events
 from gapath.driving.world import Changes
-from gapath.errors import InputError, require
+from gapath.errors import require
 from gapath.events import (
     Called,
     DriveFinished,
@@ -135,10 +135,6 @@ class Task:
         """Say what the trials are held against: label -> value."""
         steps = len(run.optimal_path) - 1
         return {"shortest": f"{steps} steps possible" if steps >= 0 else "no way to the target"}
-
-    def using(self, kernels: str) -> Self:
-        """Refuse: navigators' planners have the usual kernels."""
-        raise InputError("kernels", kernels, f"auto with task={self.name}")
 
     def check(self, problem: Problem) -> None:
         """Raise InputError if what the robot knows before it starts is of another size."""
