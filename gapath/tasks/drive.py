@@ -15,7 +15,7 @@ from gapath.driving.navigation import Navigator
 from gapath.driving.row import DriveRow, drive_row
 from gapath.driving.told import drive_events
 from gapath.driving.world import Changes
-from gapath.errors import require
+from gapath.errors import Checks, require
 from gapath.events import (
     Called,
     DriveFinished,
@@ -61,18 +61,9 @@ class DriveSettings:
     known_map: str | None
 
     def __post_init__(self) -> None:
-        require(
-            1 <= self.step_limit <= 10**6,
-            "drive.step_limit",
-            self.step_limit,
-            "an integer from 1 to 1000000",
-        )
-        require(
-            0 <= self.unknown_weight < 1,
-            "drive.unknown_weight",
-            self.unknown_weight,
-            "a number in [0, 1)",
-        )
+        check = Checks(self, "drive")
+        check("step_limit", 1 <= self.step_limit <= 10**6, "an integer from 1 to 1000000")
+        check("unknown_weight", 0 <= self.unknown_weight < 1, "a number in [0, 1)")
 
 
 @dataclass(frozen=True)
