@@ -2,15 +2,43 @@
 
 from dataclasses import fields, is_dataclass, replace
 from operator import is_
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar, runtime_checkable
 
 from gapath.errors import require
-from gapath.problem import Accelerated
+from gapath.problem import Planner
 
 AUTO = "auto"
 """The choice of every planner's own default."""
 
 Component = TypeVar("Component")
+
+
+@runtime_checkable
+class Accelerated(Protocol):
+    """A planner that several kernels can run, all of them with the same plans."""
+
+    @property
+    def kernels(self) -> tuple[str, ...]:
+        """Names of those that run here, the default first."""
+
+    def using(self, kernels: str) -> Planner:
+        """Give a copy that plans by other kernels.
+
+        Parameters
+        ----------
+        kernels : str
+            One of the names.
+
+        Returns
+        -------
+        Planner
+            A copy with the same settings.
+
+        Raises
+        ------
+        InputError
+            For a name that is none of `kernels`.
+        """
 
 
 def with_kernels(component: Component, kernels: str) -> Component:
@@ -22,7 +50,7 @@ def with_kernels(component: Component, kernels: str) -> Component:
         A task, navigator or planner; what is accelerated is looked for in its fields and in
         theirs, in lists, too.
     kernels : str
-        `AUTO`, or a name that one of them knows (`gapath.problem.Accelerated`); those that do not
+        `AUTO`, or a name that one of them knows (`Accelerated`); those that do not
         know it stay as they are.
 
     Returns

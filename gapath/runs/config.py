@@ -215,13 +215,7 @@ def split(loose: Mapping[str, Any]) -> tuple[Root, dict[str, Any]]:
 
 def read_problem(settings: Root) -> Problem:
     """Read the map and pose the problem that its start and target define."""
-    rules = [rule.name.lower() for rule in CornerCutting]
-    require(
-        settings.corner_cutting in rules,
-        "corner_cutting",
-        settings.corner_cutting,
-        f"one of {', '.join(rules)}",
-    )
+    rule = CornerCutting.named(settings.corner_cutting)
     grid: GridMap = build("map", settings.map, "map").read()
     named = map_name(grid.name, settings.map)
     if named != grid.name:  # to replace a name takes a copy of the map
@@ -229,7 +223,6 @@ def read_problem(settings: Root) -> Problem:
     for name in ("start", "target"):
         require(getattr(grid, name) is not None, f"map.{name}", "null", "a field [x, y]")
     assert grid.start is not None and grid.target is not None
-    rule = CornerCutting[settings.corner_cutting.upper()]
     return Problem(grid, grid.start, grid.target, rule)
 
 
