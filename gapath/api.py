@@ -85,8 +85,7 @@ def plan(
     >>> gapath.plan(grid, planner="astar").cost
     48.5
     """
-    rules = [rule.name.lower() for rule in CornerCutting]
-    require(corner_cutting in rules, "corner_cutting", corner_cutting, f"one of {', '.join(rules)}")
+    rule = CornerCutting.named(corner_cutting)
     start = map.start if start is None else start
     target = map.target if target is None else target
     if start is None or target is None:
@@ -98,7 +97,7 @@ def plan(
     else:
         require(not settings, "settings", [*settings], "none: the planner is given ready made")
         chosen = planner
-    problem = Problem(map, start, target, CornerCutting[corner_cutting.upper()])
+    problem = Problem(map, start, target, rule)
     if isinstance(chosen, Particular):
         chosen.check(problem)
     return plan_once(problem, chosen, seed)

@@ -1,4 +1,4 @@
-"""The one exception that means "the input is wrong", and what raises it."""
+"""Bad input: the one exception that says so, and the checks that raise it."""
 
 MOST_MEMORY = 1 << 30
 """Bytes that a planner's settings may ask for."""

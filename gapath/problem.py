@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
 from enum import IntEnum
 from functools import cached_property
-from typing import Any, NamedTuple, Protocol, runtime_checkable
+from typing import Any, NamedTuple, Protocol, Self, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,13 @@ class CornerCutting(IntEnum):
     """Not if either orthogonal neighbour is an obstacle (MovingAI's rule)."""
     NO_DIAGONALS = units.NO_DIAGONALS
     """No diagonal step at all: horizontal and vertical moves only (S04)."""
+
+    @classmethod
+    def named(cls, name: str) -> Self:
+        """Give the rule that a setting names, in lower case; raises InputError if it names none."""
+        rules = [rule.name.lower() for rule in cls]
+        require(name in rules, "corner_cutting", name, f"one of {', '.join(rules)}")
+        return cls[name.upper()]
 
 
 class PlanStatus(IntEnum):
@@ -324,32 +331,4 @@ class Batching(Protocol):
         -------
         list of Plan
             In their order.
-        """
-
-
-@runtime_checkable
-class Accelerated(Protocol):
-    """A planner that several kernels can run, all of them with the same plans."""
-
-    @property
-    def kernels(self) -> tuple[str, ...]:
-        """Names of those that run here, the default first."""
-
-    def using(self, kernels: str) -> "Planner":
-        """Give a copy that plans by other kernels.
-
-        Parameters
-        ----------
-        kernels : str
-            One of the names.
-
-        Returns
-        -------
-        Planner
-            A copy with the same settings.
-
-        Raises
-        ------
-        InputError
-            For a name that is none of `kernels`.
         """

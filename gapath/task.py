@@ -217,9 +217,6 @@ class Task(Protocol):
     def told_optimum(run: RunStarted) -> dict[str, str]:
         """Say what the trials are held against: label -> value."""
 
-    def using(self, kernels: str) -> Self:
-        """Give the same task, computed by other kernels; raises InputError if there are none."""
-
     def check(self, problem: Problem) -> None:
         """Raise InputError if the task cannot be done on this map."""
 

@@ -5,7 +5,7 @@ import pytest
 
 from gapath.errors import InputError
 from gapath.grid import GridMap
-from gapath.problem import Plan, PlanStatus, Problem
+from gapath.problem import CornerCutting, Plan, PlanStatus, Problem
 
 WEIGHTS = np.full((4, 6), 0.5)
 WEIGHTS[1, 2] = 1.0
@@ -43,3 +43,10 @@ def test_a_plan_shows_itself_in_a_notebook():
 
 def test_every_status_has_a_sentence():
     assert len({status.sentence for status in PlanStatus}) == len(PlanStatus)
+
+
+def test_a_corner_rule_is_found_by_its_name_in_lower_case_only():
+    assert [CornerCutting.named(rule.name.lower()) for rule in CornerCutting] == [*CornerCutting]
+    for name in ("ALLOW", "", None, 0, ["allow"]):
+        with pytest.raises(InputError, match=r"corner_cutting: got .* one of allow, one_side"):
+            CornerCutting.named(name)

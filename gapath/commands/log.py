@@ -69,7 +69,13 @@ def _parser() -> argparse.ArgumentParser:
         return sub
 
     command("info", _info, "say what a log holds, and whether it is whole")
-    command("verify", _verify, "run it again and compare every event; exit code 1 if one differs")
+    verify = command(
+        "verify", _verify, "run it again and compare every event; exit code 1 if one differs"
+    )
+    verify.add_argument(
+        "--kernels", default="auto", metavar="NAME",
+        help="which kernels compute, such as scalar; the events are the same (default: auto)",
+    )  # fmt: skip
     salvage = command("salvage", _salvage, "save what a killed run left (run.mcap.part)")
     salvage.add_argument(
         "-o", dest="output", type=Path, metavar="OUT",
@@ -158,7 +164,7 @@ def _verify(arguments: argparse.Namespace) -> int:
     run = next(logged)
     assert isinstance(run, RunStarted), "the reader gives it first"
     found, count, last = None, 0, None
-    for old, new in zip_longest(logged, replay_events(run)):
+    for old, new in zip_longest(logged, replay_events(run, arguments.kernels)):
         if old is None and not isinstance(last, RunFinished):
             print(f"{path}: the run was interrupted; what it logged is compared")
             break

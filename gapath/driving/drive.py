@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gapath.driving.known_map import KnownMap, Looks
 from gapath.driving.navigation import Decision, Following, Navigator, Situation
 from gapath.driving.world import Changes, World
-from gapath.errors import require
+from gapath.errors import Checks
 from gapath.events import Mode, Outcome
 from gapath.grid import Field, GridMap
 from gapath.kernels.field_of_view import HEADING_X, HEADING_Y, heading_of
@@ -43,9 +43,8 @@ class Sensor:
     occlusion: bool
 
     def __post_init__(self) -> None:
-        require(
-            1 <= self.range <= 1000, "drive.sensor.range", self.range, "an integer from 1 to 1000"
-        )
+        check = Checks(self, "drive.sensor")
+        check("range", 1 <= self.range <= 1000, "an integer from 1 to 1000")
 
 
 class Frame(NamedTuple):

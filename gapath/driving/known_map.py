@@ -78,14 +78,6 @@ class KnownMap:
         """Side of a field in metres."""
         return self._resolution
 
-    def contains(self, place: Field) -> bool:
-        """Tell whether a field (x, y) lies on the map."""
-        return 0 <= place[0] < self.cols and 0 <= place[1] < self.rows
-
-    def is_obstacle(self, place: Field) -> bool:
-        """Tell whether a field (x, y) cannot be passed as far as the robot knows."""
-        return bool(self.table[place[1], place[0]] >= OBSTACLE)
-
     def least_weight(self, start: Field, target: Field) -> int:
         """Give a table entry that bounds the weights of fields between start and target."""
         return 0 if self._start_may_shorten and start not in self._ends else int(self._least[0])

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.errors import require
+from gapath.errors import Checks
 from gapath.grid import Field, GridMap, Table
 from gapath.kernels.rng import fill, high, stream
 from gapath.kernels.units import OBSTACLE
@@ -33,11 +33,10 @@ class Changes:
     side: int
 
     def __post_init__(self) -> None:
-        require(self.every >= 0, "drive.changes.every", self.every, "an integer from 0 on")
-        require(self.lifetime >= 1, "drive.changes.lifetime", self.lifetime, "an integer from 1 on")
-        require(
-            1 <= self.side <= 1000, "drive.changes.side", self.side, "an integer from 1 to 1000"
-        )
+        check = Checks(self, "drive.changes")
+        check("every", self.every >= 0, "an integer from 0 on")
+        check("lifetime", self.lifetime >= 1, "an integer from 1 on")
+        check("side", 1 <= self.side <= 1000, "an integer from 1 to 1000")
 
 
 class World:

@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 
 from gapath.kernels.jit import kernel
 from gapath.kernels.raster import HALF, SHIFT, slope
-from gapath.kernels.units import ALLOW, FORBID, NO_DIAGONALS, OBSTACLE
+from gapath.kernels.units import ALLOW, FORBID, NO_DIAGONALS, OBSTACLE, OBSTACLE_BITS
 
-OBSTACLE_BITS = 24  # an entry's upper bits count one obstacle field
 WEIGHT_MASK = OBSTACLE - 1
 
 KEY_BITS = 44

@@ -3,7 +3,10 @@
 SCALE = 65536
 """A cost of 1.0 is 65536 units, so weights are rounded to 1 / 65536."""
 
-OBSTACLE = 1 << 24
+OBSTACLE_BITS = 24
+"""The upper bits of a table entry count one obstacle field."""
+
+OBSTACLE = 1 << OBSTACLE_BITS
 """A table entry of a field that cannot be passed: above every weight's."""
 
 ALLOW, ONE_SIDE, FORBID, NO_DIAGONALS = range(4)

@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.driving.navigation import Call, Decision, Path, Situation, StreamOf
+from gapath.driving.navigation import A_PLANNER, Call, Decision, Path, Situation, StreamOf
 from gapath.driving.past_path import simplified
-from gapath.errors import require
+from gapath.errors import Checks, require
 from gapath.events import Mode
 from gapath.grid import Field
 from gapath.kernels.field_of_view import remaining_cost
@@ -76,36 +76,18 @@ class Navigator:
     return_penalty: float
 
     def __post_init__(self) -> None:
-        where = "navigator"
-        require(
-            self.explore_interval >= 1,
-            f"{where}.explore_interval",
-            self.explore_interval,
-            "an integer from 1 on",
-        )
+        check = Checks(self, "navigator")
+        check("explore_interval", self.explore_interval >= 1, "an integer from 1 on")
         interval = self.retreat_interval
-        require(
-            len(interval) == 2 and 1 <= interval[0] <= interval[1],
-            f"{where}.retreat_interval",
-            interval,
-            "[least, most] with 1 <= least <= most",
-        )
-        require(
-            0 <= self.return_penalty <= 1000,
-            f"{where}.return_penalty",
-            self.return_penalty,
-            "a number in [0, 1000]",
-        )
-        require(len(self.replan) > 0, f"{where}.replan", "nothing", "at least one planner")
+        good = len(interval) == 2 and 1 <= interval[0] <= interval[1]
+        check("retreat_interval", good, "[least, most] with 1 <= least <= most")
+        check("return_penalty", 0 <= self.return_penalty <= 1000, "a number in [0, 1000]")
+        check("replan", len(self.replan) > 0, "at least one planner")
         named = {"retreat": self.retreat, "explore": self.explore}
         named |= {f"replan[{i}]": planner for i, planner in enumerate(self.replan)}
         for name, planner in named.items():
-            require(
-                isinstance(planner, Planner),
-                f"{where}.{name}",
-                planner,
-                "a mapping with base, the name of a planner's YAML",
-            )
+            good = isinstance(planner, Planner)
+            require(good, f"navigator.{name}", planner, A_PLANNER)
 
     @property
     def complete(self) -> bool:

@@ -17,9 +17,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.driving.navigation import Call, Decision, Path, Situation, StreamOf
+from gapath.driving.navigation import A_PLANNER, Call, Decision, Path, Situation, StreamOf
 from gapath.driving.past_path import Track
-from gapath.errors import require
+from gapath.errors import Checks
 from gapath.grid import Field, Table
 from gapath.kernels.field_of_view import remaining_cost
 from gapath.kernels.s04.genotype import MAX_SIDE
@@ -83,23 +83,14 @@ class Navigator:
 
     def __post_init__(self) -> None:
         sides = self.subsections
-        require(
-            len(sides) > 0 and all(2 <= side <= MAX_SIDE for side in sides),
-            "navigator.subsections",
-            sides,
-            f"at least one side, each from 2 to {MAX_SIDE}",
-        )
-        require(
-            isinstance(self.planner, Planner),
-            "navigator.planner",
-            self.planner,
-            "a mapping with base, the name of a planner's YAML",
-        )
+        check = Checks(self, "navigator")
+        good = len(sides) > 0 and all(2 <= side <= MAX_SIDE for side in sides)
+        check("subsections", good, f"at least one side, each from 2 to {MAX_SIDE}")
+        check("planner", isinstance(self.planner, Planner), A_PLANNER)
         if isinstance(self.planner, Particular):
             largest = Subsection(np.broadcast_to(np.int32(0), 2 * (max(sides),)), (0, 0), 1.0)
             self.planner.check(Around(largest, (0, 0), (0, 0), CornerCutting.ALLOW))
-        interval = self.retreat_interval
-        require(interval >= 1, "navigator.retreat_interval", interval, "an integer from 1 on")
+        check("retreat_interval", self.retreat_interval >= 1, "an integer from 1 on")
 
     def begin(self, query: Situation) -> Track:
         """Begin without a path."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from gapath.grid import Field, GridMap
 from gapath.kernels.rng import Stream
-from gapath.kernels.units import SCALE
+from gapath.kernels.units import OBSTACLE, SCALE
 from gapath.planning.stages import Stages
 from gapath.problem import CornerCutting, Particular, Plan, PlanStatus, Query
 from gapath.survey.obstacle_image import Clearance, dilate
@@ -72,7 +72,7 @@ class Planner(Clearance):
         grown = self._grown(problem)
         stages.end("dilation")
         for x, y in (problem.start, problem.target):
-            if grown.map.weights[y, x] == 1.0:
+            if grown.map.table[y, x] == OBSTACLE:
                 return Plan(PlanStatus.INFEASIBLE, stages=stages.seconds)
         plan: Plan = self.planner.plan(grown, stream)
         stages.end("planning")

@@ -13,6 +13,7 @@ from gapath.discovery import kinds
 from gapath.errors import require
 from gapath.events import Recorder, Settings
 from gapath.grid import GridMap
+from gapath.planning.acceleration import with_kernels
 from gapath.problem import CornerCutting, Problem
 from gapath.runs.naming import Method, map_name, method_of
 from gapath.store.inputs import Inputs, watched
@@ -43,7 +44,7 @@ class Root:
     threads : int
         Threads that do the trials of a run, if the task has any use for them.
     kernels : str
-        Which kernels compute: "auto", or a name that the task's planner knows.
+        Which kernels compute: "auto", or a name that one of the task's planners knows.
     """
 
     task: str
@@ -164,12 +165,10 @@ def make_run(config: DictConfig, choices: Mapping[str, str | None]) -> Run:
         build("recorder", values, f"recorder.{name}") for name, values in root.recorder.items()
     ]
     with watched() as method_inputs:
-        made = task.make(settings)
+        made = with_kernels(task.make(settings), root.kernels)
         maps = made.read()
     with watched() as map_inputs:
         problem = read_problem(root, maps)
-    if root.kernels != "auto":
-        made = made.using(root.kernels)
     made.check(problem)
     columns(task.row)  # a package's wrong metric is refused before anything is written
     for recorder in recorders:
@@ -237,13 +236,7 @@ def split(loose: Mapping[str, Any]) -> tuple[Root, dict[str, Any]]:
 
 def read_problem(settings: Root, maps: Mapping[str, GridMap]) -> Problem:
     """Read the map and pose the problem that its start and target define, with a task's maps."""
-    rules = [rule.name.lower() for rule in CornerCutting]
-    require(
-        settings.corner_cutting in rules,
-        "corner_cutting",
-        settings.corner_cutting,
-        f"one of {', '.join(rules)}",
-    )
+    rule = CornerCutting.named(settings.corner_cutting)
     grid: GridMap = build("map", settings.map, "map").read()
     named = map_name(grid.name, settings.map)
     if named != grid.name:  # to replace a name takes a copy of the map
@@ -251,7 +244,6 @@ def read_problem(settings: Root, maps: Mapping[str, GridMap]) -> Problem:
     for name in ("start", "target"):
         require(getattr(grid, name) is not None, f"map.{name}", "null", "a field [x, y]")
     assert grid.start is not None and grid.target is not None
-    rule = CornerCutting[settings.corner_cutting.upper()]
     return Problem(grid, grid.start, grid.target, rule, maps)
 
 

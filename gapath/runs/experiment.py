@@ -9,6 +9,7 @@ from typing import Any
 import yaml
 
 from gapath.events import Event, RunFinished, RunStarted
+from gapath.planning.acceleration import AUTO, with_kernels
 from gapath.problem import Plan
 from gapath.runs.config import Run, task_of
 from gapath.store.durable import write_whole
@@ -68,20 +69,27 @@ def run_started(run: Run, optimum: Plan) -> RunStarted:
     )
 
 
-def replay_events(started: RunStarted) -> Iterator[Event]:
+def replay_events(started: RunStarted, kernels: str = AUTO) -> Iterator[Event]:
     """Do a run again from what its log says of it.
 
     Parameters
     ----------
     started : RunStarted
         The first event of a log.
+    kernels : str
+        Which kernels compute (`gapath.planning.acceleration.with_kernels`).
 
     Yields
     ------
     Event
         What the run would emit now, from the second event on.
+
+    Raises
+    ------
+    InputError
+        If the log's settings are not those of this version, or have no such kernels.
     """
-    task = task_of(started.settings)
+    task = with_kernels(task_of(started.settings), kernels)
     batch = Batch(started.experiment, started.method, started.problem, started.seed, started.trials)
     step = found = 0
     for trial in task.trials(batch, task.optimum(started.problem)):

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.errors import require
+from gapath.errors import Checks, require
 from gapath.kernels.m22.graph import END, START, graph_lengths, line_is_free, shortest
 from gapath.kernels.raster import polyline
 from gapath.kernels.units import OBSTACLE, SCALE
@@ -192,18 +192,10 @@ class Surveyor(Clearance):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require(
-            self.keypoints in ("axes", "corners"),
-            "planner.keypoints",
-            self.keypoints,
-            '"axes" or "corners"',
-        )
-        require(
-            0 < self.corner_tolerance <= 100,
-            "planner.corner_tolerance",
-            self.corner_tolerance,
-            "a number of pixels in (0, 100]",
-        )
+        check = Checks(self, "planner")
+        check("keypoints", self.keypoints in ("axes", "corners"), '"axes" or "corners"')
+        good = 0 < self.corner_tolerance <= 100
+        check("corner_tolerance", good, "a number of pixels in (0, 100]")
 
     def check(self, problem: Query) -> None:
         """Refuse a start or target where the robot does not fit, and too many keypoints.

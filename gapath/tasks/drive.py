@@ -16,7 +16,7 @@ from gapath.driving.navigation import Navigator
 from gapath.driving.row import DriveRow, drive_row
 from gapath.driving.told import drive_events
 from gapath.driving.world import Changes
-from gapath.errors import InputError, require
+from gapath.errors import Checks, require
 from gapath.events import (
     NEVER_LEFT,
     Called,
@@ -73,18 +73,10 @@ class DriveSettings:
     known_map: str | None
 
     def __post_init__(self) -> None:
-        require(
-            self.step_limit is None or 1 <= self.step_limit <= MOST_STEPS,
-            "drive.step_limit",
-            self.step_limit,
-            f"an integer from 1 to {MOST_STEPS}, or null",
-        )
-        require(
-            0 <= self.unknown_weight < 1,
-            "drive.unknown_weight",
-            self.unknown_weight,
-            "a number in [0, 1)",
-        )
+        check = Checks(self, "drive")
+        limited = self.step_limit is None or 1 <= self.step_limit <= MOST_STEPS
+        check("step_limit", limited, f"an integer from 1 to {MOST_STEPS}, or null")
+        check("unknown_weight", 0 <= self.unknown_weight < 1, "a number in [0, 1)")
 
 
 @dataclass(frozen=True)
@@ -153,10 +145,6 @@ class Task:
         """Say what the trials are held against: label -> value."""
         steps = len(run.optimal_path) - 1
         return {"shortest": f"{steps} steps possible" if steps >= 0 else "no way to the target"}
-
-    def using(self, kernels: str) -> Self:
-        """Refuse: navigators' planners have the usual kernels."""
-        raise InputError("kernels", kernels, f"auto with task={self.name}")
 
     def check(self, problem: Problem) -> None:
         """Raise InputError if what the robot knows before it starts is of another size."""

@@ -4,18 +4,17 @@ import json
 import math
 import statistics
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
-from typing import Any, ClassVar, Self, cast
+from typing import Any, ClassVar, Self
 
 from gapath.components import build
-from gapath.errors import require
 from gapath.events import Event, Evolved, RunStarted, Surveyed, TrialFinished, TrialStarted
 from gapath.grid import GridMap
 from gapath.planning.path import octile_length
 from gapath.planning.shortest_path import shortest_path
 from gapath.planning.simulation import TimedPlan, plan_trials
-from gapath.problem import Accelerated, Particular, Plan, Planner, Problem
+from gapath.problem import Particular, Plan, Planner, Problem
 from gapath.task import Batch, Row, Trial, head
 
 
@@ -78,12 +77,6 @@ class Task:
     def told_optimum(run: RunStarted) -> dict[str, str]:
         """Say what the trials are held against: label -> value."""
         return {"optimal cost": f"{run.optimal_cost:g}"}
-
-    def using(self, kernels: str) -> Self:
-        """Give the same task, computed by other kernels; raises InputError if there are none."""
-        known = isinstance(self.planner, Accelerated)
-        require(known, "kernels", kernels, "auto: this planner has no others")
-        return replace(self, planner=cast(Accelerated, self.planner).using(kernels))
 
     def check(self, problem: Problem) -> None:
         """Raise InputError if the planner does not take such a map."""

@@ -3,7 +3,6 @@
 import json
 import math
 from collections.abc import Callable, Iterable, Sequence
-from pathlib import Path
 from typing import NamedTuple
 
 import pandas as pd
@@ -13,7 +12,7 @@ from tqdm import tqdm
 from gapath.discovery import kinds
 from gapath.errors import InputError, require
 from gapath.pipelines.reading.names import told_apart
-from gapath.store.records import SETTINGS, TRIALS, RunRecord, find_runs
+from gapath.store.records import SETTINGS, TRIALS, RunRecord
 from gapath.store.runfolder import RunFolder
 from gapath.task import columns, find_task, metrics
 
@@ -32,7 +31,7 @@ class Skipped(NamedTuple):
 
 
 class Collected(NamedTuple):
-    """What `collect` gives."""
+    """What `read_trials` gives."""
 
     trials: dict[str, pd.DataFrame]
     """For each task one row a trial: the columns of ``trials.parquet``, and `key`, the name of
@@ -42,37 +41,12 @@ class Collected(NamedTuple):
     """The runs that they come from, under names that tell them apart."""
 
 
-def collect(folder: str | Path) -> Collected:
-    """Read the trials of all runs below a folder.
+def read_trials(runs: Iterable[RunRecord]) -> Collected:
+    """Read the trials of runs.
 
     Of several runs of the same experiment, map, method and seed (made by other versions, or
     with another number of trials) only the newest counts: pooled, its trials would be
     counted twice.
-
-    Parameters
-    ----------
-    folder : path
-        The folder that holds ``<experiment>/<key>/``.
-
-    Returns
-    -------
-    trials : dict of str to DataFrame
-        Task -> one row a trial, failures included; empty if no run of the task can be used.
-    skipped : list of Skipped
-        The runs that were left out, and why.
-    runs : list of RunRecord
-        The runs that the trials come from, under names that tell them apart.
-
-    Raises
-    ------
-    InputError
-        If there is no such folder, or no run in it.
-    """
-    return read_trials(find_runs(Path(folder)))
-
-
-def read_trials(runs: Iterable[RunRecord]) -> Collected:
-    """Read the trials of runs, as `collect` does of a folder's.
 
     Parameters
     ----------
@@ -82,7 +56,7 @@ def read_trials(runs: Iterable[RunRecord]) -> Collected:
     Returns
     -------
     trials : dict of str to DataFrame
-        Task -> one row a trial.
+        Task -> one row a trial, failures included; empty if no run of the task can be used.
     skipped : list of Skipped
         The runs that were left out, and why.
     runs : list of RunRecord

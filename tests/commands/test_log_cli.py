@@ -100,7 +100,7 @@ def cut(log):
 @pytest.fixture
 def replay(monkeypatch):
     """Let the run that is done again be whatever a test wants."""
-    module = SimpleNamespace(replay_events=lambda run: list(run_events())[1:])
+    module = SimpleNamespace(replay_events=lambda run, kernels: list(run_events())[1:])
     monkeypatch.setitem(sys.modules, "gapath.runs.experiment", module)
     return module
 
@@ -134,7 +134,7 @@ def test_info_of_drives(drive_log, capsys):
 
 
 def test_verify_of_drives_does_not_compare_wall_time(drive_log, replay, capsys):
-    replay.replay_events = lambda run: list(drive_events(seconds=5.0))[1:]
+    replay.replay_events = lambda run, kernels: list(drive_events(seconds=5.0))[1:]
     assert call(capsys, "verify", drive_log)[0] == 0
 
     def elsewhere():
@@ -143,7 +143,7 @@ def test_verify_of_drives_does_not_compare_wall_time(drive_log, replay, capsys):
                 event = dataclasses.replace(event, place=(0, 1))
             yield event
 
-    replay.replay_events = lambda run: elsewhere()
+    replay.replay_events = lambda run, kernels: elsewhere()
     code, out, _ = call(capsys, "verify", drive_log)
     assert code == 1
     assert "trial 1, step 3, Stepped.place: (0, 0) in the log, (0, 1) now" in out
@@ -235,7 +235,7 @@ DIFFERENCES = {
 
 @pytest.mark.parametrize(("events", "message"), DIFFERENCES.values(), ids=DIFFERENCES)
 def test_verify_names_the_first_difference(events, message, log, replay, capsys):
-    replay.replay_events = lambda run: list(events())[1:]
+    replay.replay_events = lambda run, kernels: list(events())[1:]
     code, out, _ = call(capsys, "verify", log)
     assert code == 1
     assert "differs after" in out and message in out

@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 import yaml
 
+from gapath.pipelines.reading.collect import Collected, read_trials
 from gapath.runs.naming import Method
 from gapath.store.records import (
     MANIFEST,
@@ -18,6 +19,7 @@ from gapath.store.records import (
     Manifest,
     RunRecord,
     Status,
+    find_runs,
 )
 from gapath.store.runfolder import LOCK, RunFolder
 from gapath.store.settings import nested
@@ -36,6 +38,11 @@ from .synthetic import (
 )
 
 DATE = "2026-01-01T12:00:00"
+
+
+def collect(folder: Path) -> Collected:
+    """Read the trials of all runs below a folder."""
+    return read_trials(find_runs(folder))
 
 
 def manifest_of(method: Method, task: str, place: tuple[str, str], **known: Any) -> Manifest:

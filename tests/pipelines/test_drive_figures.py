@@ -3,9 +3,10 @@ import pytest
 from gapath.errors import InputError
 from gapath.events import Outcome, Stepped
 from gapath.pipelines.kg18.drives import figure_paths, figure_ratios, figure_times
-from gapath.pipelines.reading.collect import collect
 from gapath.recorders.mcap import FILE, read_events
 from gapath.store.records import find_runs
+
+from .conftest import collect
 
 FIGURES = (figure_times, figure_paths, figure_ratios)
 

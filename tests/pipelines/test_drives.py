@@ -14,14 +14,13 @@ from gapath.pipelines.kg18.drives import table_classes as table_drive_classes
 from gapath.pipelines.numbers.drive_summary import rate, summarise_drives
 from gapath.pipelines.numbers.statistics import wilson
 from gapath.pipelines.numbers.summary import over_instances
-from gapath.pipelines.reading.collect import collect
 from gapath.pipelines.report.report import make_report
 from gapath.pipelines.sweeps import table as table_drives_overview
 from gapath.problem import Answer, PlanStatus, Problem
 from gapath.recorders.mcap import FILE
 from gapath.store.records import find_runs
 
-from .conftest import sign
+from .conftest import collect, sign
 from .synthetic import drive_settings, make_map, make_path
 
 TABLES = (

@@ -7,9 +7,10 @@ from gapath.errors import InputError
 from gapath.events import TrialFinished
 from gapath.pipelines.kg18 import figure_convergence, figure_evaluations, figure_paths
 from gapath.pipelines.page.figures import looks
-from gapath.pipelines.reading.collect import collect
 from gapath.problem import PlanStatus
 from gapath.store.records import find_runs
+
+from .conftest import collect
 
 
 @pytest.fixture(scope="module")

@@ -17,7 +17,6 @@ from gapath.pipelines.m22 import figure_pipeline as figure_m22_pipeline
 from gapath.pipelines.m22 import logs as m22_logs
 from gapath.pipelines.m22 import table as table_m22
 from gapath.pipelines.papers import m22
-from gapath.pipelines.reading.collect import collect
 from gapath.pipelines.report.report import make_report
 from gapath.problem import Problem
 from gapath.recorders import mcap
@@ -27,6 +26,7 @@ from gapath.runs.naming import Method
 from gapath.store.records import find_runs
 from gapath.tasks.plan import Task as PlanTask
 
+from .conftest import collect
 from .synthetic import plan_settings
 
 PLANNERS = {

@@ -5,12 +5,11 @@ import shutil
 import pytest
 
 from gapath.errors import InputError
-from gapath.pipelines.reading.collect import collect
 from gapath.pipelines.reading.listing import listing
 from gapath.pipelines.reading.logs import events_of, read_logs, run_start
 from gapath.store.records import find_runs
 
-from .conftest import sign, write_status
+from .conftest import collect, sign, write_status
 
 
 def plans(folder):

@@ -10,7 +10,6 @@ from gapath.errors import InputError
 from gapath.pipelines.numbers.statistics import wilson
 from gapath.pipelines.papers.s04 import MAPS, RUNS, SUCCESSES, paper_successes
 from gapath.pipelines.reading import logs
-from gapath.pipelines.reading.collect import collect
 from gapath.pipelines.s04 import figure_paths as figure_s04_paths
 from gapath.pipelines.s04 import table1 as table_s04
 from gapath.pipelines.s04 import table_sweep as table_s04_sweep
@@ -24,7 +23,7 @@ from gapath.store.records import find_runs
 from gapath.store.settings import nested
 from gapath.tasks.plan import Task as PlanTask
 
-from .conftest import record_of
+from .conftest import collect, record_of
 from .synthetic import plan_settings
 
 PERCENT = {  # as the paper prints them, by search space

@@ -9,14 +9,13 @@ from gapath.discovery import load
 from gapath.pipelines.numbers.statistics import wilson
 from gapath.pipelines.numbers.text import NOTHING
 from gapath.pipelines.page.section import ALL, find_sections
-from gapath.pipelines.reading.collect import collect
 from gapath.pipelines.report.report import make_report
 from gapath.pipelines.sweeps import table, table_metrics
 from gapath.store.records import find_runs
 from gapath.task import find_task, metrics
 from gapath.tasks.plan import Task as PlanTask
 
-from .conftest import record_of
+from .conftest import collect, record_of
 from .synthetic import METRICS
 
 

@@ -9,9 +9,10 @@ from gapath.pipelines.numbers.summary import summarise, summarise_by
 from gapath.pipelines.page.section import Table
 from gapath.pipelines.papers.kg18 import SECONDS, implied_epochs
 from gapath.pipelines.papers.names import label, rank
-from gapath.pipelines.reading.collect import collect
 from gapath.pipelines.sweeps import table as table_overview
 from gapath.store.records import find_runs
+
+from .conftest import collect
 
 
 def trials(**columns):

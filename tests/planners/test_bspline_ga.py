@@ -13,8 +13,9 @@ from gapath.kernels import rng
 from gapath.kernels.jit import JIT
 from gapath.kernels.kg18 import evolution
 from gapath.mapio.reconstructed import generate
+from gapath.planning.acceleration import Accelerated
 from gapath.planning.flaw import flaw
-from gapath.problem import Accelerated, PlanStatus, Problem
+from gapath.problem import PlanStatus, Problem
 
 
 def same_as_twin(problem, ga, seed, trial):

@@ -6,8 +6,8 @@ import naive
 import numpy as np
 
 from gapath.kernels.rng import stream
+from gapath.kernels.units import OBSTACLE, SCALE
 
-OBSTACLE = 1 << 24
 HEADINGS = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)]
 
 
@@ -92,7 +92,7 @@ def kg18_drive(problem, navigator, sensor, seed, trial, step_limit, unknown_weig
     def plan(step, planner, part, index, dearer=()):
         table = known.copy()
         for x, y in set(dearer):
-            table[y, x] += round(navigator.return_penalty * 65536)
+            table[y, x] += round(navigator.return_penalty * SCALE)
         grid = SimpleNamespace(table=table, rows=table.shape[0], cols=table.shape[1])
         query = SimpleNamespace(
             map=grid, start=place, target=target, corner_cutting=problem.corner_cutting

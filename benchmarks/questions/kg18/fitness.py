@@ -33,8 +33,8 @@ from benchmarks.measure import Calls, Row, interleave, make_problem, quartiles, 
 from gapath.kernels.kg18.bspline import Basis, basis, rasterise
 from gapath.kernels.kg18.evaluation import evaluate, workspace
 from gapath.kernels.kg18.lanes import ONE_BY_ONE, SIDE_BY_SIDE, Way, chromosome_matrix
-from gapath.kernels.lines import KEY_BITS, OBSTACLE_BITS, ONE_OBSTACLE
-from gapath.kernels.units import ALLOW
+from gapath.kernels.lines import KEY_BITS, ONE_OBSTACLE
+from gapath.kernels.units import ALLOW, OBSTACLE_BITS
 
 MAP = "kg18_test4"
 CONTROL_POINTS, WAY_POINTS = 5, 5

@@ -30,13 +30,12 @@ from gapath.kernels.kg18.lanes import (
 from gapath.kernels.lines import (
     KEY_BITS,
     MOST_OBSTACLES,
-    OBSTACLE_BITS,
     WEIGHT_MASK,
     corners_cut,
     steps_inside,
 )
 from gapath.kernels.raster import HALF, SHIFT, slope
-from gapath.kernels.units import ALLOW
+from gapath.kernels.units import ALLOW, OBSTACLE_BITS
 
 MOST_FIELDS = 255
 """So many entries may be added before obstacles and cost are told apart: with one more the

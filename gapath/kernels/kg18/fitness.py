@@ -12,12 +12,12 @@ from gapath.kernels.kg18.bspline import Basis, way_point
 from gapath.kernels.lines import (
     KEY_BITS,
     MOST_OBSTACLES,
-    OBSTACLE_BITS,
     ONE_OBSTACLE,
     WEIGHT_MASK,
     entry,
     line_key,
 )
+from gapath.kernels.units import OBSTACLE_BITS
 
 
 @kernel

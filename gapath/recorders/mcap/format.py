@@ -6,6 +6,8 @@ Standard messages are what other people's viewers draw; messages of our own pack
 
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
+from gapath.kernels.units import OBSTACLE, SCALE
+
 PROFILE, LIBRARY = "ros2", "gapath"
 """What the file's header says: its conventions, and who wrote it."""
 
@@ -75,7 +77,7 @@ float64 unknown_weight    # what it takes an unknown field to cost
 uint32 sensor_range       # layers of the triangle that it sees
 uint32 step_limit         # steps after which it has overrun
 """,
-    "gapath_msgs/msg/DriveStep": """\
+    "gapath_msgs/msg/DriveStep": f"""\
 # A robot looked around and moved, or stood (the first look of a drive: stood).
 uint8 EXPLORE=0
 uint8 REPLAN=1
@@ -86,7 +88,7 @@ int32 y
 uint8 heading             # where it looked: 0 (+x) to 7, clockwise with y down
 uint8 mode
 int32[] fields            # seen for the first time or changed: x, y, x, y, ... [fields]
-int32[] entries           # their weights in units of 1 / 65536; 16777216: an obstacle
+int32[] entries           # their weights in units of 1 / {SCALE}; {OBSTACLE}: an obstacle
 """,
     "gapath_msgs/msg/PlannerCall": """\
 # A navigator called a planner in this step, before the robot moved.

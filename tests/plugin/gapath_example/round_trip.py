@@ -7,7 +7,6 @@ from functools import partial
 from typing import Any, ClassVar, Self
 
 from gapath.components import build
-from gapath.errors import InputError
 from gapath.events import Event, RunStarted, TrialFinished, TrialStarted
 from gapath.grid import GridMap
 from gapath.kernels.rng import stream
@@ -62,10 +61,6 @@ class Task:
     def told_optimum(run: RunStarted) -> dict[str, str]:
         """Say what the trials are held against: label -> value."""
         return {"optimal cost, one way": f"{run.optimal_cost:g}"}
-
-    def using(self, kernels: str) -> Self:
-        """Refuse: its planner has the usual kernels."""
-        raise InputError("kernels", kernels, f"auto with task={self.name}")
 
     def check(self, problem: Problem) -> None:
         """Accept every map."""
