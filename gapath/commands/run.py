@@ -4,6 +4,7 @@ import os
 import shlex
 import sys
 import traceback
+from collections.abc import Mapping, Sequence
 from typing import NoReturn
 
 from hydra import compose
@@ -65,7 +66,7 @@ class SweepCheck(Callback):  # type: ignore[misc]
                 OmegaConf.set_struct(config, False)
                 del config["hydra"]
                 check_used(overrides, config.task)
-                make_run(config, choices)
+                make_run(config, choices, settings_of(overrides))
         except Exception as error:
             sys.exit(complain(error))
         # Hydra would compose every job once more, only to see whether it can be composed.
@@ -85,8 +86,8 @@ def job(config: DictConfig) -> None:
     overrides = list(hydra.overrides.task)
     try:
         check_used(overrides, config.task)
-        run = make_run(config, hydra.runtime.choices)
-        outcome = execute(run, command(overrides))
+        run = make_run(config, hydra.runtime.choices, settings_of(overrides))
+        outcome = execute(run, command(overrides, hydra.runtime.config_sources))
     except BAD_CONFIGURATION as error:
         fail(complain(error), sweep)
     except Exception:
@@ -106,16 +107,22 @@ def check_used(overrides: list[str], task: str) -> None:
         for group in find_task(name).groups:
             users.setdefault(group, []).append(name)
     for override in overrides:
-        key = override.partition("=")[0].lstrip("+~")
+        (key,) = settings_of([override])
         able = users.get(key.partition(".")[0], [task])
         good = " or ".join(f"task={name}" for name in able)
         require(task in able, key, f"task={task}, which does not use it", good)
 
 
-def command(overrides: list[str]) -> str:
+def settings_of(overrides: list[str]) -> list[str]:
+    """Give the names that overrides set."""
+    return [override.partition("=")[0].lstrip("+~") for override in overrides]
+
+
+def command(overrides: list[str], sources: Sequence[Mapping[str, str]]) -> str:
     """Give the command that does the same job, wherever its folder lies."""
     kept = [o for o in overrides if not o.startswith(("output=", "force="))]
-    return shlex.join(["gapath", *kept])
+    own = [source["path"] for source in sources if source["provider"] == "command-line"]
+    return shlex.join(["gapath", *(f"--config-dir={path}" for path in own), *kept])
 
 
 def fail(code: int, sweep: bool) -> NoReturn:

@@ -1,7 +1,7 @@
 """From a composed configuration to a checked run."""
 
 import dataclasses
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from importlib.resources import files
 from typing import Any
@@ -119,7 +119,9 @@ def conf_folder() -> str:
     return str(files("gapath.conf"))
 
 
-def make_run(config: DictConfig, choices: Mapping[str, str | None]) -> Run:
+def make_run(
+    config: DictConfig, choices: Mapping[str, str | None], overridden: Collection[str] = ()
+) -> Run:
     """Check a composed configuration and make everything that a run needs.
 
     Parameters
@@ -128,6 +130,8 @@ def make_run(config: DictConfig, choices: Mapping[str, str | None]) -> Run:
         As composed from ``conf``.
     choices : mapping
         Configuration group -> name of the chosen YAML.
+    overridden : collection of str
+        Settings that the command line sets, for the run's name.
 
     Returns
     -------
@@ -175,7 +179,7 @@ def make_run(config: DictConfig, choices: Mapping[str, str | None]) -> Run:
         recorder.check(root.trials)
     return Run(
         root.name,
-        method_of(task, _with_types_of(settings, loose), choices),
+        method_of(task, _with_types_of(settings, loose), choices, overridden),
         problem,
         made,
         [recorder for recorder in recorders if recorder.records],

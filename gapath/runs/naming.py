@@ -1,6 +1,6 @@
 """What a run's map and method are called in tables: by name, and what differs from the YAML."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from importlib.resources import files
 from pathlib import Path
 from types import MappingProxyType
@@ -33,7 +33,10 @@ class Method(NamedTuple):
 
 
 def method_of(
-    task: type[Task], config: Mapping[str, Any], choices: Mapping[str, str | None]
+    task: type[Task],
+    config: Mapping[str, Any],
+    choices: Mapping[str, str | None],
+    overridden: Collection[str] = (),
 ) -> Method:
     """Tell what a run tries.
 
@@ -45,6 +48,9 @@ def method_of(
         As composed from ``conf``.
     choices : mapping
         Configuration group -> name of the chosen YAML.
+    overridden : collection of str
+        Settings that the command line sets: what differs from a YAML of the user's own, which is
+        not read again.
 
     Returns
     -------
@@ -56,16 +62,21 @@ def method_of(
     given: dict[str, Value] = {"corner_cutting": config.get("corner_cutting")}
     usual: dict[str, Value] = {"corner_cutting": plain["corner_cutting"]}
     for group in task.groups:
-        values, name = config.get(group), choices.get(group)
+        name, flat = choices.get(group), flatten(config.get(group), group)
+        given |= flat
         if name in yaml_names(group):
-            known: Any = yaml_values(group, str(name))
+            usual |= flatten(yaml_values(group, str(name)), group)
+        elif group in plain:
+            usual |= flatten(plain[group], group)
         else:
-            known = plain.get(group, values)  # else a YAML of the user's own
-        given |= flatten(values, group)
-        usual |= flatten(known, group)
+            usual |= {key: value for key, value in flat.items() if not _within(key, overridden)}
     if given.get("drive.known_map"):
         given["drive.known_map"] = _title(str(given["drive.known_map"]))
     return Method(str(choices[task.groups[0]]), _changes(given, usual))
+
+
+def _within(key: str, settings: Collection[str]) -> bool:
+    return any(key == name or key.startswith((f"{name}.", f"{name}[")) for name in settings)
 
 
 def map_name(name: str, settings: Mapping[str, Any]) -> str:
@@ -94,7 +105,7 @@ def _usual(kind: str) -> dict[str, Any]:
     """Give the values of a kind's YAML; of drawn maps, which have one each, those of any."""
     names = yaml_names("map")
     every = (yaml_values("map", name) for name in ([kind] if kind in names else names))
-    return next(values for values in every if values["kind"] == kind)
+    return next((values for values in every if values["kind"] == kind), {})
 
 
 def _title(path: str) -> str:

@@ -127,3 +127,17 @@ def test_an_edited_file_that_a_method_reads_is_another_run(gapath, tmp_path):
     assert len(runs) == 2
     assert all(Path(path).name == "k.map" for run in runs for path in run.known.method_inputs)
     assert len({run.known.method for run in read_trials(runs).runs}) == 2
+
+
+def test_a_yaml_of_ones_own_is_named_with_what_was_typed(gapath, tmp_path):
+    folder = tmp_path / "conf" / "planner"
+    folder.mkdir(parents=True)
+    (folder / "my_ga.yaml").write_text("defaults: [ga1]\npopulation: 30\n")
+    run = ("--config-dir", str(tmp_path / "conf"), "planner=my_ga", "map=kg18_test1")
+    code, text, errors = gapath(
+        "-m", *run, "planner.population=20,150", "recorder=none", "trials=2"
+    )
+    assert (code, errors) == (0, "")
+    assert "my_ga[population=20]:" in text and "my_ga[population=150]:" in text
+    (first, _) = find_runs(tmp_path / "out")
+    assert f"--config-dir={tmp_path / 'conf'} planner=my_ga" in first.known.command
