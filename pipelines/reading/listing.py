@@ -16,7 +16,7 @@ def listing(runs: Iterable[RunRecord]) -> list[dict[str, str]]:
     Returns
     -------
     list of dict
-        One a run: key, experiment, map, planner (or navigator), trials, state, date and size;
+        One a run: key, experiment, map, method (planner or navigator), trials, state, date and size;
         "?" where no manifest says it.
     """
     rows = []
@@ -28,7 +28,7 @@ def listing(runs: Iterable[RunRecord]) -> list[dict[str, str]]:
                 "key": run.folder.name,
                 "experiment": run.folder.parent.name,
                 "map": known.map + instance if known else "?",
-                "planner": known.method if known else "?",
+                "method": known.method if known else "?",
                 "trials": str(known.trials) if known else "?",
                 "state": run.state,
                 "date": run.date[:16].replace("T", " "),

@@ -51,7 +51,8 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
     """
     task = find_task(runs[0].known.task)
     method = task.groups[0]
-    overview = _OVERVIEWS[task.row] if task.row in _OVERVIEWS else plain_overview(task)
+    rich = (_OVERVIEWS[kind] for kind in task.row.__mro__ if kind in _OVERVIEWS)
+    overview = next(rich, None) or plain_overview(task)
     by = ["experiment", "map", "map_source", "start", "target", method]
     rows = summarise_by(trials, by, overview.summarise)
     instances = trials.groupby(by)["map_instance"].nunique()
@@ -147,4 +148,4 @@ _OVERVIEWS: dict[type[Row], Overview] = {
         _drive_cells,
     ),
 }
-"""Rows of which more can be said than how many trials succeeded."""
+"""Rows, and what is derived from them, of which more can be said than how many succeeded."""

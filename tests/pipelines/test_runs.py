@@ -71,7 +71,7 @@ def test_a_run_without_manifest_still_shows_in_the_list(run):
     write_status(run, "running")
     (run / "manifest.json").unlink()
     (row,) = listing([only(run)])
-    assert (row["map"], row["planner"], row["state"]) == ("?", "?", "interrupted")
+    assert (row["map"], row["method"], row["state"]) == ("?", "?", "interrupted")
 
 
 def change(run, **changes):

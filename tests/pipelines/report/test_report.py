@@ -166,7 +166,7 @@ def test_the_list_of_runs(outputs, capsys):
     assert main(["runs", str(outputs)]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].split() == [
-        "key", "experiment", "map", "planner", "trials", "state", "date", "size",
+        "key", "experiment", "map", "method", "trials", "state", "date", "size",
     ]  # fmt: skip
     assert len(lines) == 2 + 4 * 5 * 4
     assert any("kg18_test4 #2" in line for line in lines)
