@@ -16,8 +16,8 @@ def listing(runs: Iterable[RunRecord]) -> list[dict[str, str]]:
     Returns
     -------
     list of dict
-        One a run: key, experiment, map, method (planner or navigator), trials, state, date and size;
-        "?" where no manifest says it.
+        One a run: key, experiment, map, method (planner or navigator), trials, state, date and
+        size; "?" where no manifest says it.
     """
     rows = []
     for run in runs:
