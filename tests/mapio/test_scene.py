@@ -29,7 +29,7 @@ def reader(**values):
 def test_the_committed_picture_is_the_scene(number):
     drawn = load_map(f"m22_scene{number:02d}")
     with as_file(files("gapath.maps") / f"m22_scene{number:02d}.png") as path:
-        read = ImageReader(str(path), None, None).read()
+        read = ImageReader(str(path), None, None, invert=False).read()
     assert (read.obstacles == drawn.obstacles).all()
     assert set(np.unique(read.weights)) == {0.0, 1.0}
     assert set(np.unique(drawn.weights)) == {0.5, 1.0}

@@ -30,7 +30,7 @@ def run_of(*overrides):
         (["recorder.mcap.flush_every=7"], ["recorder.mcap.flush_every=7.0"]),
         (["task=drive"],
          ["task=drive", "drive.sensor.range='4'", "drive.changes.every=0.0", "trials=1.0"]),
-        (["task=drive"], ["task=drive", "navigator.explore.population='40'",
+        (["task=drive", "drive.step_limit=2000"], ["task=drive", "navigator.explore.population='40'",
                           "navigator.return_penalty=0", "drive.step_limit='2000'"]),
         (["task=drive", "navigator=sedighi"],
          ["task=drive", "navigator=sedighi", "navigator.planner.max_epochs='100'"]),
@@ -43,7 +43,7 @@ def test_one_value_has_one_key(first, second, tmp_path, monkeypatch):
     one, other = run_of(*first), run_of(*second)
     assert text_of(one.settings) == text_of(other.settings)
     assert one.method == other.method
-    keys = {run_key(run.settings, run.method.name, run.problem) for run in (one, other)}
+    keys = {run_key(run.settings, run.problem, run.inputs) for run in (one, other)}
     assert len(keys) == 1
 
 
