@@ -104,3 +104,12 @@ def test_the_step_limit_goes_with_the_map_unless_it_is_set(gapath, tmp_path):
         (log,) = tmp_path.glob(f"out/limit{limit}/*/{mcap.FILE}")
         (told,) = [event for event in mcap.read_events(log) if isinstance(event, DriveStarted)]
         assert (told.step_limit, told.sensor_range, told.unknown_weight) == (limit, 4, 0.5)
+
+
+def test_a_map_that_a_navigator_does_not_take_is_refused_before_the_first_job(gapath, tmp_path):
+    rows = "." * 1025 + "\n"
+    (tmp_path / "room.map").write_text(f"type octile\nheight 1024\nwidth 1025\nmap\n{rows * 1024}")
+    code, text, errors = gapath("-m", *DRIVE, "navigator=replan_astar,dstar_lite")
+    assert (code, text) == (2, "")
+    assert "map: got 1025 x 1024 fields, expected at most 1048576" in errors
+    assert not (tmp_path / "out").exists()
