@@ -271,7 +271,7 @@ class Query(Protocol):
 
 @runtime_checkable
 class Particular(Protocol):
-    """A planner that does not suit every problem says so, before a run begins."""
+    """A planner or navigator that does not suit every problem says so, before a run begins."""
 
     def check(self, problem: Query) -> None:
         """Raise InputError if a problem does not suit."""

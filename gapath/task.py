@@ -8,11 +8,20 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from functools import lru_cache
-from typing import Any, ClassVar, NamedTuple, Protocol, Self, get_type_hints, runtime_checkable
+from typing import (
+    Any,
+    ClassVar,
+    NamedTuple,
+    Protocol,
+    Self,
+    get_args,
+    get_type_hints,
+    runtime_checkable,
+)
 
 from gapath.discovery import kinds, load
 from gapath.errors import require
-from gapath.events import Event, RunStarted
+from gapath.events import Event, Finished, RunStarted, TrialStarted
 from gapath.grid import GridMap
 from gapath.planning.path import octile_length
 from gapath.problem import Plan, Problem
@@ -200,7 +209,8 @@ class Task(Protocol):
     threaded: ClassVar[bool]
     """Whether threads speed it up."""
     events: ClassVar[tuple[type[Any], ...]]
-    """The events that its trials emit, of `gapath.events`."""
+    """The events that its trials emit, of `gapath.events`: first `TrialStarted`, last one of
+    `Finished`. Recorders go by these, not by the task."""
 
     @classmethod
     def make(cls, settings: Mapping[str, Any]) -> Self:
@@ -231,6 +241,17 @@ class Task(Protocol):
 
     def line(self, rows: list[Any]) -> str:
         """Sum rows up in one line."""
+
+
+def check_events(task: type[Task]) -> None:
+    """Raise InputError if a task has events that the log does not know, or that end no trial."""
+    where = f"task {task.name}, events"
+    for kind in task.events:
+        known = kind in get_args(Event)
+        require(known, where, kind.__name__, "classes of gapath.events, which the log can hold")
+    ends = any(issubclass(kind, Finished) for kind in task.events)
+    names = [kind.__name__ for kind in task.events]
+    require(TrialStarted in task.events and ends, where, names, "TrialStarted and one of Finished")
 
 
 def find_task(name: object, where: str = "task") -> type[Task]:

@@ -10,7 +10,7 @@ import yaml
 from gapath import components, discovery
 from gapath.discovery import kinds, yaml_names, yaml_values
 from gapath.errors import InputError
-from gapath.events import Recorder, RunFinished, TrialStarted
+from gapath.events import Finished, Recorder, RunFinished, TrialStarted
 from gapath.grid import GridMap
 from gapath.kernels import rng
 from gapath.planning.flaw import flaw
@@ -22,7 +22,7 @@ from gapath.runs import config
 from gapath.runs.experiment import execute, run_started
 from gapath.runs.naming import Method
 from gapath.store.settings import flatten
-from gapath.task import Batch, Task, columns, find_task
+from gapath.task import Batch, Task, check_events, columns, find_task
 from gapath.tasks.plan import Task as PlanTask
 from gapath.tasks.plan import trial_events
 
@@ -222,6 +222,7 @@ def test_tasks_say_what_they_are_and_tell_what_they_say(name):
     task = find_task(name)
     assert isinstance(task, Task)
     assert task.name == name
+    check_events(task)
     assert columns(task.row)[task.groups[0]] is str
     assert columns(task.row)[task.success] is bool
     plain = yaml.safe_load((files("gapath.conf") / "config.yaml").read_text("utf-8"))
@@ -237,6 +238,7 @@ def test_tasks_say_what_they_are_and_tell_what_they_say(name):
         told = list(trial.events(step))
         assert {type(event) for event in told} <= set(task.events)
         assert isinstance(told[0], TrialStarted) and told[0].step == step
+        assert isinstance(told[-1], Finished) and told[-1].ending
         assert told[-1].step == step + trial.steps - 1
         assert trial.row.values().keys() == columns(task.row).keys()
         assert trial.row.values()[task.success] == trial.found

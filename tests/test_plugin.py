@@ -119,6 +119,81 @@ def test_its_task_runs_is_logged_recorded_and_reported(site, tmp_path):
     assert code == 2 and "navigator: got task=round_trip" in errors
 
 
+WALK = """
+from dataclasses import replace
+from functools import partial
+from gapath.events import *
+from gapath_example.round_trip import Task as RoundTrip
+import numpy as np
+
+
+class Task(RoundTrip):
+    name, events = "walk", (TrialStarted, Stepped, DriveFinished)
+
+    def trials(self, batch, optimum):
+        for trial in super().trials(batch, optimum):
+            (_, finished) = trial.events(0)
+            path, number = finished.answer.path, trial.row.trial
+            yield replace(trial, steps=len(path), events=partial(told, path, number, batch.seed))
+
+
+def told(path, number, seed, step):
+    nothing = np.empty((0, 2), dtype=np.int32)
+    yield TrialStarted(step, number, seed)
+    for i, (x, y) in enumerate(path.tolist()):
+        yield Stepped(step + i, number, (x, y), 0, Mode.EXPLORE, nothing, nothing[:, 0], 0.0)
+    steps = len(path) - 1
+    yield DriveFinished(step + steps, number, Outcome.REACHED, steps, 0)
+"""
+
+
+def with_task(name, text, tmp_path):
+    """Install the package with one more task."""
+    source = Path(shutil.copytree(PLUGIN, tmp_path / "source"))
+    settings = source / "pyproject.toml"
+    head = '[project.entry-points."gapath.tasks"]\n'
+    line = f'{name} = "gapath_example.{name}"\n'
+    settings.write_text(settings.read_text().replace(head, head + line))
+    (source / "gapath_example" / f"{name}.py").write_text(text)
+    return installed(source, tmp_path / "packages")
+
+
+def test_a_third_task_with_the_events_of_drives_works_everywhere(tmp_path):
+    site = with_task("walk", WALK, tmp_path)
+    command = ("gapath", "task=walk", "map=kg18_test3", "planner=astar", "trials=2")
+    succeed(site, tmp_path, *command)
+    folder = only(tmp_path / "outputs" / "walk")
+    log = folder / "run.mcap"
+    assert "reproduced" in succeed(site, tmp_path, "gapath-log", "verify", log)
+    assert "2 of 2: 2 reached" in succeed(site, tmp_path, "gapath-log", "info", log)
+    assert (folder / "trial-0.rrd").stat().st_size > 0
+    succeed(site, tmp_path, "gapath-log", "rerun", log, "--trials", "1")
+    assert (folder / "trial-1.rrd").stat().st_size > 0
+    succeed(site, tmp_path, "gapath-report", "outputs")
+    overview = pd.read_csv(tmp_path / "outputs" / "report" / "walk_overview.csv")
+    assert overview[["map", "n", "success"]].to_numpy().tolist() == [["kg18_test3", 2, 1.0]]
+
+
+@pytest.mark.parametrize(
+    ("events", "message"),
+    [
+        ("(TrialStarted, Lap, DriveFinished)", "walk, events: got Lap, expected classes of gapath"),
+        ("(Stepped,)", "walk, events: got ['Stepped'], expected TrialStarted and one of Finished"),
+    ],
+)
+def test_events_that_no_log_can_hold_are_refused_before_anything_is_written(
+    events, message, tmp_path
+):
+    own = WALK.replace("(TrialStarted, Stepped, DriveFinished)", events)
+    own = own.replace("class Task(", "class Lap(Stepped):\n    pass\n\n\nclass Task(")
+    site = with_task("walk", own, tmp_path)
+    code, out, errors = run(site, tmp_path, "gapath", "task=walk", "planner=astar")
+    assert (code, out) == (2, "")
+    assert message in errors and "Traceback" not in errors
+    assert not (tmp_path / "outputs").exists()
+    assert run(site, tmp_path, "gapath", "planner=astar", "recorder=none")[0] == 0
+
+
 def test_its_map_reader_reads(site, tmp_path):
     (tmp_path / "room.csv").write_text("0.5,0.5,0.5\n0.5,1,0.5\n0.5,0.5,0.5\n")
     command = ("gapath", "map=file", "map.path=room.csv", "map.start=[0,1]", "map.target=[2,1]",

@@ -23,6 +23,9 @@ from gapath.events import (
     Stepped,
 )
 from gapath.recorders import mcap
+from gapath.recorders.mcap import FILE
+from gapath.store.durable import part_of
+from gapath.store.records import MANIFEST, read_record
 from gapath.store.settings import text_of
 from gapath.task import find_task
 
@@ -41,7 +44,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     -------
     int
         Exit code: 0 for success, 1 if a log is not reproduced or the viewer failed, 2 for
-        bad input.
+        bad input, also of one log among several.
     """
     arguments = _parser().parse_args(argv)
     try:
@@ -52,31 +55,38 @@ def main(argv: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except (InputError, OSError) as error:
-        print(f"gapath-log: {' '.join(str(error).split())}", file=sys.stderr)
-        return 2
+        return _complain(error)
+
+
+def _complain(error: Exception) -> int:
+    print(f"gapath-log: {' '.join(str(error).split())}", file=sys.stderr)
+    return 2
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        prog="gapath-log", description="Look into the log of a run (run.mcap) and work with it."
+        prog="gapath-log",
+        description=f"Look into the log of a run ({FILE}) and work with it. Where a FILE is "
+        "read, the folder of a run or its manifest will do, too.",
     )
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
-    def command(name: str, run: Any, text: str) -> argparse.ArgumentParser:
+    def command(name: str, run: Any, text: str, many: bool = False) -> argparse.ArgumentParser:
         sub = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
-        sub.add_argument("file", type=Path, metavar="FILE", help="a log, such as run.mcap")
+        given = ("files", "+") if many else ("file", None)
+        about = f"a log, such as {FILE}"
+        sub.add_argument(given[0], nargs=given[1], type=Path, metavar="FILE", help=about)
         sub.set_defaults(run=run)
         return sub
 
     command("info", _info, "say what a log holds, and whether it is whole")
-    verify = command(
-        "verify", _verify, "run it again and compare every event; exit code 1 if one differs"
-    )
+    compare = "run logs again and compare every event; exit code 1 if one differs"
+    verify = command("verify", _verify, compare, many=True)
     verify.add_argument(
         "--kernels", default="auto", metavar="NAME",
         help="which kernels compute, such as scalar; the events are the same (default: auto)",
     )  # fmt: skip
-    salvage = command("salvage", _salvage, "save what a killed run left (run.mcap.part)")
+    salvage = command("salvage", _salvage, f"save what a killed run left ({part_of(Path(FILE))})")
     salvage.add_argument(
         "-o", dest="output", type=Path, metavar="OUT",
         help="the log to write (default: FILE without .part, or with .salvaged before .mcap)",
@@ -99,8 +109,21 @@ def _trials(text: str) -> list[int]:
         raise argparse.ArgumentTypeError(f"got {text!r}, expected numbers such as 0,3") from None
 
 
+def _log_of(path: Path) -> Path:
+    """Give the log that a file is, or that a run has whose folder or manifest it is."""
+    folder = path.parent if path.name == MANIFEST else path
+    if not folder.is_dir():
+        return path
+    log, run = folder / FILE, read_record(folder)
+    part = part_of(log)
+    rest = f"; what is left: gapath-log salvage {part}" if part.is_file() else ""
+    require(not run.fault, path, run.fault, f"a log, or the folder of a run that is whole{rest}")
+    require(FILE in run.known.files, path, "a run without a log", "one with recorder=mcap")
+    return log
+
+
 def _info(arguments: argparse.Namespace) -> int:
-    path = arguments.file
+    path = _log_of(arguments.file)
     try:
         run, ended, finished = _summary(mcap.read_events(path))
         state = "whole" if ended else "whole, but the run was interrupted"
@@ -157,26 +180,34 @@ def _salvage(arguments: argparse.Namespace) -> int:
 
 
 def _verify(arguments: argparse.Namespace) -> int:
+    return max([_verified(path, arguments.kernels) for path in arguments.files])
+
+
+def _verified(path: Path, kernels: str) -> int:
+    """Verify a log, say in a line what came of it, and give the exit code."""
+    try:
+        code, found = _compared(_log_of(path), kernels)
+    except (InputError, OSError) as error:
+        return _complain(error)
+    print(f"{path}: {found}", flush=True)
+    return code
+
+
+def _compared(path: Path, kernels: str) -> tuple[int, str]:
     from gapath.runs.experiment import replay_events  # compiles kernels: only where it is needed
 
-    path = arguments.file
     logged = mcap.read_events(path)
     run = next(logged)
     assert isinstance(run, RunStarted), "the reader gives it first"
-    found, count, last = None, 0, None
-    for old, new in zip_longest(logged, replay_events(run, arguments.kernels)):
+    count, last = 0, None
+    for old, new in zip_longest(logged, replay_events(run, kernels)):
         if old is None and not isinstance(last, RunFinished):
-            print(f"{path}: the run was interrupted; what it logged is compared")
-            break
+            return 0, f"reproduced, {count} events are equal; the run was interrupted after them"
         found = difference(old, new, _where(old or new))
         if found:
-            break
+            return 1, f"differs after {count} equal events: {found}"
         count, last = count + 1, old
-    if found:
-        print(f"{path}: differs after {count} equal events: {found}")
-        return 1
-    print(f"{path}: reproduced, {count} events are equal")
-    return 0
+    return 0, f"reproduced, {count} events are equal"
 
 
 def _where(event: Any) -> str:
@@ -232,9 +263,10 @@ def _short(value: Any) -> str:
 
 
 def _rerun(arguments: argparse.Namespace) -> int:
-    folder = arguments.folder or arguments.file.parent
+    path = _log_of(arguments.file)
+    folder = arguments.folder or path.parent
     folder.mkdir(parents=True, exist_ok=True)
-    for name in _record(arguments.file, arguments.trials, folder):
+    for name in _record(path, arguments.trials, folder):
         print(folder / name)
     return 0
 
@@ -259,7 +291,7 @@ def _record(path: Path, trials: list[int], folder: Path) -> list[str]:
 
 
 def _view(arguments: argparse.Namespace) -> int:
-    path = arguments.file
+    path = _log_of(arguments.file)
     require(path.is_file(), path, "no such file", "a log or a recording (.rrd)")
     with tempfile.TemporaryDirectory() as folder:
         if path.suffix != ".rrd":

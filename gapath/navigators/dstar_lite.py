@@ -16,7 +16,7 @@ from gapath.grid import Field
 from gapath.kernels import dstar_lite as kernels
 from gapath.kernels.dstar_lite import LENGTH_BITS, MAX_FIELDS, Heuristic, Search
 from gapath.kernels.units import SCALE
-from gapath.problem import Plan, PlanStatus
+from gapath.problem import Plan, PlanStatus, Query
 
 
 class Repair:
@@ -31,12 +31,6 @@ class Repair:
     def __init__(self, query: Situation) -> None:
         known = query.map
         count = known.rows * known.cols
-        require(
-            count <= MAX_FIELDS,
-            "map",
-            f"{known.rows} x {known.cols} fields",
-            f"at most {MAX_FIELDS} fields for this navigator",
-        )
         self._search = Search(
             known.table.copy(),
             np.empty(count, dtype=np.int64),
@@ -101,8 +95,20 @@ class Navigator:
 
     complete = True
 
+    def check(self, problem: Query) -> None:
+        """Refuse a map of more than `MAX_FIELDS` fields; raises InputError."""
+        cols, rows = problem.map.cols, problem.map.rows
+        require(
+            cols * rows <= MAX_FIELDS,
+            "map",
+            f"{cols} x {rows} fields",
+            f"at most {MAX_FIELDS} fields in all for D* Lite, whose costs are exact up to there: "
+            "navigator=replan_astar takes larger maps",
+        )
+
     def begin(self, query: Situation) -> Track:
-        """Begin a search without a path."""
+        """Begin a search without a path; raises InputError as `check` does."""
+        self.check(query)
         return Track((query.start,), memory=Repair(query))
 
     def step(

@@ -18,7 +18,7 @@ from gapath.problem import CornerCutting, Problem
 from gapath.runs.naming import Method, map_name, method_of
 from gapath.store.inputs import Inputs, watched
 from gapath.store.settings import flatten, nested
-from gapath.task import Task, columns, find_task
+from gapath.task import Task, check_events, columns, find_task
 
 
 @dataclass
@@ -174,7 +174,8 @@ def make_run(
     with watched() as map_inputs:
         problem = read_problem(root, maps)
     made.check(problem)
-    columns(task.row)  # a package's wrong metric is refused before anything is written
+    columns(task.row)  # a package's wrong metric, or event, is refused before anything is written
+    check_events(task)
     for recorder in recorders:
         recorder.check(root.trials)
     return Run(

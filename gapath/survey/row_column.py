@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from gapath.grid import Table
 from gapath.kernels.lines import Ends
-from gapath.kernels.s04.genotype import SWITCHES, Genotype, decode, empty_sums, running_sums
-from gapath.kernels.s04.reach import UNREACHED, reach
+from gapath.kernels.s04.genotype import Genotype, decode, empty_sums, running_sums
+from gapath.kernels.s04.reach import reach
 from gapath.problem import Query
 
 
@@ -69,7 +69,7 @@ class Class(NamedTuple):
     column_wise: bool
     """Column-wise ones; with `row_wise` all that Hermanu's planner has."""
     switches: int | None
-    """The fewest switches of a free path, at most 2, which S04 allows; None if there is none."""
+    """The fewest switches of a free path; S04 allows `SWITCHES`. None if no number helps."""
 
 
 def classify(problem: Query) -> Class:
@@ -85,9 +85,10 @@ def classify(problem: Query) -> Class:
     Class
         By dynamic programming over all chromosomes (`gapath.kernels.s04.reach`).
     """
-    last = _origins(problem, Genotype(True, SWITCHES))[-1, :, :, 0] != UNREACHED
-    used = np.flatnonzero(last.any(axis=1))
-    return Class(bool(last[0, 0]), bool(last[0, 1]), int(used[0]) if len(used) else None)
+    least, _ = _reached(problem, column_wise=True)
+    last = least[-1, :, 0]
+    fewest = int(last.min())
+    return Class(bool(last[0] == 0), bool(last[1] == 0), fewest if fewest < len(least) else None)
 
 
 def express(problem: Query, genotype: Genotype) -> NDArray[np.int32] | None:
@@ -107,17 +108,17 @@ def express(problem: Query, genotype: Genotype) -> NDArray[np.int32] | None:
     (2 n + 2,) int32 or None
         The chromosome, with as few switches as any; None if no chromosome has a free path.
     """
-    origins = _origins(problem, genotype)
-    n = len(origins)
-    ways = np.argwhere(origins[n - 1, :, :, 0] != UNREACHED)
-    if not len(ways):
+    least, origins = _reached(problem, genotype.column_wise)
+    n = len(least)
+    mode = int(least[n - 1, :, 0].argmin())
+    used = int(least[n - 1, mode, 0])
+    if used > genotype.switches or used == n:
         return None
-    used, mode = (int(value) for value in ways[0])
     row = np.zeros(2 * n + 2, dtype=np.int32)
     row[2 * n :] = n - 1
     at = 0
     for i in range(n - 1, 0, -1):
-        code = int(origins[i, used, mode, at])
+        code = int(origins[i, mode, at])
         before, toggled, direction = code >> 2, code >> 1 & 1, code & 1
         row[1 + i], row[n + i] = at, direction
         if toggled:
@@ -128,12 +129,12 @@ def express(problem: Query, genotype: Genotype) -> NDArray[np.int32] | None:
     return row
 
 
-def _origins(problem: Query, genotype: Genotype) -> NDArray[np.int32]:
+def _reached(problem: Query, column_wise: bool) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """Run the dynamic programming (`gapath.kernels.s04.reach.reach`)."""
     view = SquareView.of(problem)
     n = view.side
     sums = empty_sums(n)
     running_sums(view.table, *view.flips, sums)
-    origins = np.empty((n, genotype.switches + 1, 2, n), dtype=np.int32)
-    reach(sums, view.ends, genotype, origins)
-    return origins
+    least, origins = np.empty((2, n, 2, n), dtype=np.int32)
+    reach(sums, view.ends, column_wise, least, origins)
+    return least, origins

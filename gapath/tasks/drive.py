@@ -31,7 +31,7 @@ from gapath.events import (
 from gapath.grid import GridMap
 from gapath.planning.path import path_weights
 from gapath.planning.shortest_path import shortest_path
-from gapath.problem import Plan, Problem
+from gapath.problem import Particular, Plan, Problem
 from gapath.task import Batch, Trial
 
 KNOWN = "drive.known_map"
@@ -147,7 +147,12 @@ class Task:
         return {"shortest": f"{steps} steps possible" if steps >= 0 else "no way to the target"}
 
     def check(self, problem: Problem) -> None:
-        """Raise InputError if what the robot knows before it starts is of another size."""
+        """Raise InputError if what the robot knows before it starts is of another size.
+
+        Or if the navigator does not take such a map.
+        """
+        if isinstance(self.navigator, Particular):
+            self.navigator.check(problem)
         if self.known_map is not None:
             true, known = problem.map, problem.maps[KNOWN]
             require(

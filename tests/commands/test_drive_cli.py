@@ -104,3 +104,40 @@ def test_the_step_limit_goes_with_the_map_unless_it_is_set(gapath, tmp_path):
         (log,) = tmp_path.glob(f"out/limit{limit}/*/{mcap.FILE}")
         (told,) = [event for event in mcap.read_events(log) if isinstance(event, DriveStarted)]
         assert (told.step_limit, told.sensor_range, told.unknown_weight) == (limit, 4, 0.5)
+
+
+def test_a_map_that_a_navigator_does_not_take_is_refused_before_the_first_job(gapath, tmp_path):
+    rows = "." * 1025 + "\n"
+    (tmp_path / "room.map").write_text(f"type octile\nheight 1024\nwidth 1025\nmap\n{rows * 1024}")
+    code, text, errors = gapath("-m", *DRIVE, "navigator=replan_astar,dstar_lite")
+    assert (code, text) == (2, "")
+    assert "map: got 1025 x 1024 fields, expected at most 1048576" in errors
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_run_folder_or_its_manifest_stands_for_its_log(gapath, tmp_path, capfd):
+    (tmp_path / "room.map").write_text(OPEN)
+    assert gapath(*DRIVE, "recorder=mcap")[0] == 0
+    (log,) = tmp_path.glob(f"out/drive/*/{mcap.FILE}")
+    folder, manifest = log.parent, log.with_name("manifest.json")
+
+    def call(*argv):
+        return log_cli.main([str(word) for word in argv]), *capfd.readouterr()
+
+    code, out, _ = call("verify", folder, manifest, log)
+    assert code == 0
+    lines = [line.partition(": reproduced")[0] for line in out.splitlines()]
+    assert lines == [str(folder), str(manifest), str(log)]
+    assert f"file:         {log}, " in call("info", folder)[1]
+    assert call("rerun", manifest)[1] == f"{folder / 'trial-0.rrd'}\n"
+
+    log.rename(log.with_name("run.mcap.part"))
+    (folder / "status.json").write_text('{"state": "interrupted"}')
+    for command in ("info", "verify", "rerun", "view"):
+        code, out, err = call(command, folder)
+        assert (code, out) == (2, "")
+        assert f"{folder}: got interrupted" in err and f"gapath-log salvage {log}.part" in err
+
+    assert gapath(*DRIVE, "recorder=none", "name=bare")[0] == 0
+    (bare,) = (path for path in tmp_path.glob("out/bare/*") if path.is_dir())
+    assert "got a run without a log, expected one with recorder=mcap" in call("verify", bare)[2]

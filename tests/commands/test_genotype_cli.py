@@ -42,6 +42,35 @@ def test_ends_of_ones_own_on_a_map_that_is_not_square(capsys, tmp_path):
     assert rows[2][:10] == ["hook", "6", "x", "4", "0,0", "0,3", "yes", "no", "no", "1"]
 
 
+THREE = """7
+0010110
+1010000
+1001010
+1000010
+0000100
+1011001
+0111100
+"""
+NEVER = """5
+01000
+00010
+11100
+00001
+11000
+"""
+
+
+@pytest.mark.parametrize(
+    ("grid", "switches"), [(THREE, ["3"]), (NEVER, ["none", "helps"])], ids=["three", "never"]
+)
+def test_switches_are_counted_without_a_bound(grid, switches, capsys, tmp_path):
+    path = tmp_path / "grid.txt"
+    path.write_text(grid)
+    code, rows, _ = run(capsys, path)
+    assert code == 0
+    assert rows[2][6:] == ["yes", "no", "no", *switches, "no", "no", "no"]
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

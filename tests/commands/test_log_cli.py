@@ -192,6 +192,28 @@ def test_verify_of_an_interrupted_run_compares_what_is_there(cut, replay, capsys
     assert "reproduced" in out
 
 
+def test_verify_of_several_logs_says_a_line_of_each(log, replay, capsys, tmp_path):
+    replay.replay_events = lambda run, kernels: list(changed(3, weights=2.5)())[1:]
+    code, out, err = call(capsys, "verify", log, log)
+    assert (code, err) == (1, "")
+    assert [line.split(" equal")[0] for line in out.splitlines()] == [f"{log}: differs after 2"] * 2
+    bad = tmp_path / "bad.mcap"
+    code, out, err = call(capsys, "verify", bad, log)
+    assert code == 2
+    assert out.count("\n") == err.count("\n") == 1
+    assert str(bad) in err and str(log) in out
+
+
+def test_salvage_is_suggested_only_where_there_is_something_to_save(log, replay, capsys, tmp_path):
+    whole = log.read_bytes()
+    for damaged, hopeful in [(whole[:-600], True), (whole[:40], False), (b"seed: 7", False)]:
+        log.write_bytes(damaged)
+        code, _, err = call(capsys, "verify", log)
+        assert code == 2
+        assert (f"gapath-log salvage {log}" in err) == hopeful
+    assert "gapath-log salvage" not in call(capsys, "verify", tmp_path / "none.mcap")[2]
+
+
 def changed(number, **fields):
     def events():
         for index, event in enumerate(run_events()):
@@ -270,7 +292,7 @@ def test_view_starts_the_viewer_on_this_machine_only(code, log, capsys, monkeypa
 BAD = {
     "missing": (lambda log: ["info", log.with_name("no.mcap")], "no.mcap"),
     "missing to view": (lambda log: ["view", log.with_name("no.mcap")], "no.mcap"),
-    "folder": (lambda log: ["verify", log.parent], "readable file"),
+    "folder": (lambda log: ["verify", log.parent], "the folder of a run that is whole"),
     "trial": (lambda log: ["rerun", log, "--trials", "30"], "recorder.rerun.trials"),
     "output exists": (lambda log: ["salvage", log, "-o", log], "exists"),
     "no folder": (lambda log: ["salvage", log, "-o", log / "x" / "y.mcap"], "y.mcap"),

@@ -11,7 +11,7 @@ from strategies import problems
 from gapath.driving.navigation import Situation
 from gapath.errors import InputError
 from gapath.grid import GridMap
-from gapath.navigators.dstar_lite import Repair
+from gapath.navigators.dstar_lite import Navigator, Repair
 from gapath.planning.flaw import flaw
 from gapath.planning.shortest_path import shortest_path
 from gapath.problem import Problem
@@ -130,6 +130,11 @@ def test_a_repair_is_cheaper_than_a_search():
 
 
 def test_a_map_too_large_for_its_costs_is_refused():
-    grid = SimpleNamespace(rows=2**11, cols=2**10, table=np.zeros((1, 1), dtype=np.int32))
-    with pytest.raises(InputError, match="2048 x 1024 fields"):
-        Repair(Situation(grid, (0, 0), (1, 1), 0))
+    navigator = Navigator()
+    grid = SimpleNamespace(rows=2**10, cols=2**10)
+    query = Situation(grid, (0, 0), (1, 1), 0)
+    navigator.check(query)
+    grid.cols += 1
+    for refuse in (navigator.check, navigator.begin):
+        with pytest.raises(InputError, match="1025 x 1024 fields, expected at most 1048576"):
+            refuse(query)

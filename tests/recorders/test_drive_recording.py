@@ -196,6 +196,22 @@ def test_a_drive_that_knows_no_way_and_never_calls(tmp_path, events):
     assert f"The robot {NEVER_LEFT}" in text
 
 
+def test_events_that_no_other_scene_fits_show_the_map_and_the_way(tmp_path, events):
+    record(tmp_path, [event for event in events if not isinstance(event, DriveStarted)])
+    found = read(tmp_path / "trial-0.rrd")
+    places = [step.place for step in of(events, Stepped)]
+    assert found["/map/way", "LineStrips2D:strips"] == [centres(places)]
+    assert [row for _, row in found["/map/robot", "Points2D:positions"]] == [
+        centres([place]) for place in places
+    ]
+    assert "| ended | reached |" in found["/text", "TextDocument:text"][0]
+    assert ("/map", "Image:buffer") in found
+    record(tmp_path, [event for event in events if not isinstance(event, DriveStarted | Stepped)])
+    found = read(tmp_path / "trial-0.rrd")
+    last = of(events, PathsChanged)[-1].path.tolist()
+    assert found["/map/way", "LineStrips2D:strips"] == [centres(last)]
+
+
 def test_the_files_are_verified_and_equal_for_equal_events(tmp_path, events):
     for name in "ab":
         (tmp_path / name).mkdir()

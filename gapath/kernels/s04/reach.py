@@ -1,8 +1,8 @@
 """Which vertices S04's genotype can reach: dynamic programming over all chromosomes at once.
 
 A path is free if each of its joints is, and a joint depends on two successive vertices only. So
-it is enough to know, for each vertex, mode and number of switches so far, at which locations a
-free path can be; of (n times 2)^n chromosomes about 24 n^3 joints remain.
+it is enough to know, for each vertex, mode and location, with how few switches a free path leads
+there; of (n times 2)^n chromosomes about 8 n^3 joints remain.
 """
 
 import numpy as np
@@ -10,9 +10,7 @@ from numpy.typing import NDArray
 
 from gapath.kernels.jit import kernel
 from gapath.kernels.lines import ONE_OBSTACLE, Ends
-from gapath.kernels.s04.genotype import HORIZONTAL, Genotype, Sums, run
-
-UNREACHED = -1
+from gapath.kernels.s04.genotype import HORIZONTAL, Sums, run
 
 
 @kernel(inner=True)
@@ -25,8 +23,10 @@ def is_free(sums: Sums, n: int, x: int, y: int, u: int, v: int, direction: int) 
 
 
 @kernel
-def reach(sums: Sums, ends: Ends, genotype: Genotype, origins: NDArray[np.int32]) -> None:
-    """Find all vertices to which a free path leads.
+def reach(
+    sums: Sums, ends: Ends, column_wise: bool, least: NDArray[np.int32], origins: NDArray[np.int32]
+) -> None:
+    """Find all vertices to which a free path leads, each with as few switches as can be.
 
     Parameters
     ----------
@@ -34,36 +34,36 @@ def reach(sums: Sums, ends: Ends, genotype: Genotype, origins: NDArray[np.int32]
         Of the map.
     ends : Ends
         Start and target.
-    genotype : Genotype
-        What chromosomes can be.
-    origins : (n, switches + 1, 2, n) int32
-        Overwritten: at [i, used, mode, location] from where a free path comes to vertex i, as
-        4 * location of the vertex before + 2 * (the mode changed after it) + direction of the
-        joint; `UNREACHED` if none does. Outer vertices stand at location 0.
+    column_wise : bool
+        Whether paths may begin column-wise.
+    least : (n, 2, n) int32
+        Overwritten: at [i, mode, location] the fewest switches of a free path to vertex i there;
+        n, which no path needs, if none leads there. Outer vertices stand at location 0.
+    origins : (n, 2, n) int32
+        Overwritten, where a path leads: from where it comes, as 4 * location of the vertex before +
+        2 * (the mode changed after it) + direction of the joint.
     """
-    n = origins.shape[0]
-    origins[:] = UNREACHED
-    origins[0, 0, 0, 0] = 0
-    if genotype.column_wise:
-        origins[0, 0, 1, 0] = 0
+    n = least.shape[0]
+    least[:] = n
+    least[0, : 2 if column_wise else 1, 0] = 0
     for i in range(n - 1):
-        for used in range(genotype.switches + 1):
-            for mode in range(2):
-                for a in range(n if i else 1):
-                    if origins[i, used, mode, a] == UNREACHED:
-                        continue
-                    x, y = ends.start_x, ends.start_y
-                    if i:
-                        x, y = (i, a) if mode else (a, i)
-                    for toggled in range(2 if used < genotype.switches else 1):
-                        now = mode ^ toggled
-                        for b in range(n if i + 1 < n - 1 else 1):
-                            if origins[i + 1, used + toggled, now, b] != UNREACHED:
-                                continue
-                            u, v = ends.target_x, ends.target_y
-                            if i + 1 < n - 1:
-                                u, v = (i + 1, b) if now else (b, i + 1)
-                            for direction in range(2):
-                                if is_free(sums, n, x, y, u, v, direction):
-                                    code = 4 * a + 2 * toggled + direction
-                                    origins[i + 1, used + toggled, now, b] = code
+        for mode in range(2):
+            for a in range(n if i else 1):
+                used = least[i, mode, a]
+                if used == n:
+                    continue
+                x, y = ends.start_x, ends.start_y
+                if i:
+                    x, y = (i, a) if mode else (a, i)
+                for toggled in range(2):
+                    now = mode ^ toggled
+                    for b in range(n if i + 1 < n - 1 else 1):
+                        if least[i + 1, now, b] <= used + toggled:
+                            continue
+                        u, v = ends.target_x, ends.target_y
+                        if i + 1 < n - 1:
+                            u, v = (i + 1, b) if now else (b, i + 1)
+                        for direction in range(2):
+                            if is_free(sums, n, x, y, u, v, direction):
+                                least[i + 1, now, b] = used + toggled
+                                origins[i + 1, now, b] = 4 * a + 2 * toggled + direction

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from gapath.errors import require
+from gapath.errors import InputError, require
 from gapath.events import (
     Called,
     DriveFinished,
@@ -106,6 +106,9 @@ class Messages:
             case RunFinished(step, trials, found):
                 yield log_record(step, INFO, f"run finished: {found} of {trials} trials succeeded")
                 yield record("/run_end", step, trials, found)
+            case _:
+                kind = type(event).__name__
+                raise InputError("recorder.mcap", f"an event {kind}", "one of gapath.events")
 
 
 def _run_started(run: RunStarted) -> Iterator[Record]:

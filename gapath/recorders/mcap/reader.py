@@ -25,7 +25,7 @@ from gapath.recorders.mcap.cdr import Record
 from gapath.recorders.mcap.format import LIBRARY, MAX_CHUNK, MAX_LOG, NS_PER_STEP, PROFILE
 from gapath.recorders.mcap.messages import event
 
-_WHOLE = "a whole log of gapath (what a killed run left: gapath-log salvage)"
+_WHOLE = "a whole log of gapath"
 _BEGUN = "a log of gapath that is whole at least up to the first message"
 
 T = TypeVar("T")
@@ -52,10 +52,16 @@ def read_events(path: str | Path) -> Iterator[Event]:
         If the file cannot be read, is not a log of gapath, has another version, is cut
         off or damaged, or would inflate to more than `MAX_CHUNK` or `MAX_LOG`.
     """
-    with _refusing(path, _WHOLE), Path(path).open("rb") as file:
-        ends = sum(isinstance(record, DataEnd) for record in _records(file))
-        require(ends == 1, "end of data", f"{ends} records", "one")
-        yield from _events(file)
+    try:
+        with _refusing(path, _WHOLE), Path(path).open("rb") as file:
+            ends = sum(isinstance(record, DataEnd) for record in _records(file))
+            require(ends == 1, "end of data", f"{ends} records", "one")
+            yield from _events(file)
+    except InputError as error:
+        if not _has_begun(path):
+            raise
+        expected = f"{error.expected}; to save the rest: gapath-log salvage {path}"
+        raise InputError(error.where, error.value, expected) from error
 
 
 def read_prefix(path: str | Path) -> Iterator[Event]:
@@ -101,6 +107,14 @@ def count_messages(path: str | Path) -> Counter[str]:
     with _refusing(path, _BEGUN), Path(path).open("rb") as file:
         contents = _until_damage(_contents(file))
         return Counter(item.topic for item in contents if not isinstance(item, RunStarted))
+
+
+def _has_begun(path: str | Path) -> bool:
+    """Tell whether a log is whole up to its first message, so that there is something to save."""
+    try:
+        return next(read_prefix(path), None) is not None
+    except InputError:
+        return False
 
 
 def _events(file: IO[bytes]) -> Iterator[Event]:

@@ -78,6 +78,13 @@ def log_problem(stream: rr.RecordingStream, run: RunStarted, width: float) -> No
         stream.log("map/optimal_path", strip, static=True)
 
 
+def log_map(stream: rr.RecordingStream, grid: GridMap) -> None:
+    """Log a map in greys, which never changes."""
+    # As in KG18 0 is black and 1 white; squared, or the usual 0.5 would drown the colours.
+    grey = np.floor(grid.weights**2 * 255 + 0.5).astype(np.uint8)
+    stream.log("map", rr.Image(grey, color_model="L"), static=True)
+
+
 def centres(fields: NDArray[np.int32]) -> NDArray[np.float32]:
     """Give where fields (..., 2) are drawn."""
     return (fields + 0.5).astype(np.float32)

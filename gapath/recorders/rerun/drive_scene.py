@@ -36,6 +36,9 @@ from gapath.recorders.rerun.drawing import (
 )
 from gapath.recorders.rerun.drive_panels import layout, text
 
+NEEDS: frozenset[type[Event]] = frozenset({DriveStarted, Stepped, DriveFinished})
+"""Kinds of events that a trial has whose scene this is."""
+
 TIMELINE = "step"
 
 # A mode has the colour of the part of KG18's step function that belongs to it.

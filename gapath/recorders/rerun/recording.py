@@ -1,16 +1,17 @@
 """Rerun recordings: one ``trial-<n>.rrd`` for each chosen trial.
 
-What a recording shows is made in `gapath.recorders.rerun.scene` for plans and in
-`gapath.recorders.rerun.drive_scene` for drives. They import Rerun, which takes up to a second,
-so that waits until a chosen trial has ended. The recording is made in memory and written
-here, because Rerun's own file writer loses data on a full disk without an error.
+What a recording shows is made by a scene: `gapath.recorders.rerun.drive_scene` for drives,
+`gapath.recorders.rerun.scene` for plans, `gapath.recorders.rerun.plain_scene` for all else; a
+trial's events decide which, whatever task they come from. Scenes import Rerun, which takes up to
+a second, so that waits until a chosen trial has ended. The recording is made in memory and
+written here, because Rerun's own file writer loses data on a full disk without an error.
 """
 
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from gapath.errors import require
-from gapath.events import DriveFinished, Event, RunStarted, Surveyed, TrialFinished, TrialStarted
+from gapath.events import Event, Finished, RunStarted, Surveyed, TrialStarted
 from gapath.store.durable import part_of, publish, write_part
 
 
@@ -83,16 +84,17 @@ class Recorder:
                 self._events = [event]
             case Surveyed():
                 self._survey = [event]
-            case TrialFinished() | DriveFinished() if self._events:
+            case Finished() if self._events:
                 self._write(event.trial, [*self._events, *self._survey, event])
                 self._events = []
             case _ if self._events:
                 self._events.append(event)
 
     def _write(self, trial: int, events: list[Event]) -> None:
-        from gapath.recorders.rerun import drive_scene, scene
+        from gapath.recorders.rerun import drive_scene, plain_scene, scene
 
-        kind = scene if isinstance(events[-1], TrialFinished) else drive_scene
+        told = {type(event) for event in events}
+        kind = next(each for each in (drive_scene, scene, plain_scene) if told >= each.NEEDS)
         name = f"trial-{trial}.rrd"
         write_part(self._folder / name, kind.recording(self._run, events))
         self._names.append(name)

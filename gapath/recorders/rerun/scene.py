@@ -20,12 +20,16 @@ from gapath.recorders.rerun.drawing import (
     centres,
     document,
     line,
+    log_map,
     log_problem,
     map_view,
     new_stream,
     problem_rows,
     send_curve,
 )
+
+NEEDS: frozenset[type[Event]] = frozenset({TrialFinished})
+"""Kinds of events that a trial has whose scene this is."""
 
 TIMELINE = "epoch"
 
@@ -57,7 +61,7 @@ def recording(run: RunStarted, events: list[Event]) -> bytes:
     stream.send_blueprint(_blueprint(run, evolutions), make_active=False)
     stream.send_recording_name(f"{run.problem.map.name} {run.method} trial {trial.trial}")
     log_problem(stream, run, 6)
-    _log_map(stream, run.problem.map)
+    log_map(stream, run.problem.map)
     for survey in surveys:
         _log_graph(stream, run.problem.map, survey.graph)
     for evolved in evolutions:
@@ -68,12 +72,6 @@ def recording(run: RunStarted, events: list[Event]) -> bytes:
     content: bytes = memory.drain_as_bytes()
     stream.disconnect()
     return content
-
-
-def _log_map(stream: rr.RecordingStream, grid: GridMap) -> None:
-    # As in KG18 0 is black and 1 white; squared, or the usual 0.5 would drown the colours.
-    grey = np.floor(grid.weights**2 * 255 + 0.5).astype(np.uint8)
-    stream.log("map", rr.Image(grey, color_model="L"), static=True)
 
 
 def _log_graph(stream: rr.RecordingStream, grid: GridMap, graph: Graph) -> None:

@@ -17,7 +17,7 @@ from gapath.kernels.s04.genotype import Genotype
 from gapath.mapio.asciigrid import Reader
 from gapath.planning.flaw import flaw
 from gapath.problem import CornerCutting, Problem
-from gapath.survey.row_column import SquareView, express
+from gapath.survey.row_column import SquareView, classify, express
 
 ALL = [Genotype(*genotype) for genotype in (*GENOTYPES.values(), (True, 1))]
 
@@ -111,6 +111,30 @@ def test_a_grid_that_needs_two_switches():
     expected = fewest_switches(5, start, target, blocked)
     assert expected == [None, 2]
     check(tiny(blocked, start, target), *expected)
+
+
+def test_any_number_of_switches_is_counted():
+    """On five by five fields, against all chromosomes with any switches that change a path."""
+    n, start, target = 5, (1, 1), (3, 1)
+    ways = []
+    for count in range(n - 1):
+        for genes in itertools.combinations(range(n - 2), count):
+            for flag, *locations in itertools.product(range(2), *[range(n)] * (n - 2)):
+                for direction in itertools.product(range(2), repeat=n - 1):
+                    chromosome = twin.Chromosome(flag, [0, *locations, 0], direction, genes)
+                    fields = set(twin.walk(twin.corners(chromosome, start, target)))
+                    ways.append((count, sum(1 << (y * n + x) for x, y in fields)))
+    switches, paths = np.array(ways, dtype=np.int64).T
+    random, seen = np.random.default_rng(0), set()
+    for _ in range(1000):
+        blocked = random.random((n, n)) < 0.45
+        blocked[start[::-1]] = blocked[target[::-1]] = False
+        obstacles = sum(1 << (int(y) * n + int(x)) for y, x in np.argwhere(blocked))
+        free = switches[paths & obstacles == 0]
+        fewest = int(free.min()) if len(free) else None
+        assert classify(tiny(blocked, start, target)).switches == fewest
+        seen.add(fewest)
+    assert seen >= {None, 0, 1}
 
 
 @settings(max_examples=200)
