@@ -14,17 +14,23 @@ from hydra._internal.utils import get_args_parser
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from omegaconf import OmegaConf
 
+import gapath
 from gapath import components
+from gapath.api import load_map
+from gapath.commands import genotype as genotype_cli
 from gapath.commands import log as log_cli
 from gapath.commands import run as cli
+from gapath.mapio.movingai import read_scenario
 from gapath.pipelines.report import cli as report_cli
+from gapath.planning.path import octile_length
 from gapath.runs import config
 from gapath.task import find_task
 
 ROOT = Path(__file__).parents[1]
+EXAMPLES = ROOT / "examples"
 PAGES = [
     page
-    for pattern in ("*.md", "docs/**/*.md", "maps/*.md", "outputs/README.md", "benchmarks/*.md")
+    for pattern in ("*.md", "docs/**/*.md", "maps/*.md", "examples/*.md", "outputs/README.md")
     for page in sorted(ROOT.glob(pattern))
 ]
 PAPERS = (ROOT / "docs" / "papers.md").read_text("utf-8")
@@ -180,7 +186,7 @@ def commands(page):
     return [
         line
         for line in found
-        if re.match(r"gapath(-log|-report)? \S", line) and not placeholder.search(line)
+        if re.match(r"gapath(-log|-report|-genotype)? \S", line) and not placeholder.search(line)
     ]
 
 
@@ -203,7 +209,7 @@ def check_report(words):
 
 
 def check_gapath(words):
-    """Compose every job of a command and make its parts; no map is read."""
+    """Compose every job of a command and make its parts; only maps with files are read."""
     given = get_args_parser().parse_args(words)
     if given.shell_completion or given.help:
         return
@@ -219,22 +225,72 @@ def check_gapath(words):
             for name, values in root.recorder.items():
                 components.build("recorder", values, f"recorder.{name}")
             components.build("map", root.map, "map")
+            if "path" in root.map:
+                config.read_problem(root)
 
 
-CHECKS = {"gapath": check_gapath, "gapath-log": check_log, "gapath-report": check_report}
+def check_genotype(words):
+    assert genotype_cli.main(words) == 0
+
+
+CHECKS = {
+    "gapath": check_gapath,
+    "gapath-log": check_log,
+    "gapath-report": check_report,
+    "gapath-genotype": check_genotype,
+}
 EXAMPLE = "planner=one_bend"  # of tests/plugin, which has tests of its own
 
 
 @each_page
-def test_every_command_shown_is_understood(page):
+def test_every_command_shown_is_understood(page, monkeypatch):
+    monkeypatch.chdir(EXAMPLES)
     for command in commands(page):
         program, *words = shlex.split(command, comments=True)
         if EXAMPLE not in words:
             CHECKS[program](words)
 
 
+WITH_FILES = sorted(
+    {line.partition(" #")[0] for page in PAGES for line in commands(page) if "map.path=" in line}
+)
+
+
+@pytest.mark.parametrize("command", WITH_FILES)
+def test_every_command_with_a_file_does_what_the_page_says(command, tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(EXAMPLES)
+    words = [*shlex.split(command)[1:], "recorder=none", f"output={tmp_path}"]
+    monkeypatch.setattr("sys.argv", ["gapath", *words])
+    cli.main()
+    text, errors = capfd.readouterr()
+    assert errors == ""
+    assert re.search(r"^(status +found|outcome +reached)$", text, re.MULTILINE)
+
+
+def test_the_pages_use_every_example():
+    used = " ".join(page.read_text("utf-8") for page in PAGES if page.parent != EXAMPLES)
+    for file in EXAMPLES.iterdir():
+        image = file.suffix == ".pgm"  # named by a YAML file
+        assert image or file.is_dir() or file.suffix == ".md" or file.name in used, file.name
+
+
+def test_published_lengths_of_the_example_are_those_of_its_scenario(monkeypatch):
+    monkeypatch.chdir(EXAMPLES)
+    rows = read_scenario("arena.map.scen")
+    assert len(rows) == 6
+    for number, row in enumerate(rows):
+        grid = load_map("arena.map", scenario="arena.map.scen", problem=number)
+        plan = gapath.plan(grid, planner="astar", minimise="length", corner_cutting="forbid")
+        assert octile_length(plan.path) == pytest.approx(row.optimal_length, abs=1e-6)
+
+
 def test_a_command_that_is_wrong_is_noticed():
-    for words in (["planner=ga9"], ["planner.colour=red"], ["planner.population=-5"]):
+    for words in (
+        ["planner=ga9"],
+        ["planner.colour=red"],
+        ["planner.population=-5"],
+        ["map=file", "map.path=office.png", "map.start=[1,1]", "map.target=[2,2]"],
+    ):
         with pytest.raises(cli.BAD_CONFIGURATION):
             check_gapath(words)
     with pytest.raises(AssertionError, match="gapath-log does not know"):

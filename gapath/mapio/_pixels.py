@@ -1,4 +1,4 @@
-"""Grey pixels of an image file: the only place that decodes images."""
+"""Pixels of an image file: the only place that decodes images."""
 
 import io
 import re
@@ -14,27 +14,29 @@ from gapath.errors import InputError, require
 from gapath.grid import MAX_FIELDS
 from gapath.mapio._input import read_bytes
 
+PALETTE = 3
 PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
-PNG_CHANNELS = {0: 1, 2: 3, 4: 2, 6: 4}
-"""Channels by colour type: grey, RGB, grey and alpha, RGB and alpha."""
-NETPBM_CHANNELS = {b"P5": 1, b"P6": 3}
-NETPBM_HEADER = re.compile(rb"(P[56])" + 3 * rb"(?:\s|#[^\r\n]*[\r\n])+(\d{1,9})" + rb"\s")
+PNG_CHANNELS = {0: 1, 2: 3, PALETTE: 1, 4: 2, 6: 4}
+"""Channels by colour type: grey, RGB, palette, grey and alpha, RGB and alpha."""
+NETPBM_CHANNELS = {b"P2": 1, b"P3": 3, b"P5": 1, b"P6": 3}
+"""Channels by kind: as text, P2 grey and P3 RGB; binary, P5 and P6."""
+NETPBM_HEADER = re.compile(rb"(P[2356])" + 3 * rb"(?:\s|#[^\r\n]*[\r\n])+(\d{1,9})" + rb"\s")
 
 Channels = NDArray[np.uint8]
 """Samples as they are in the file, (rows, cols, channels)."""
 
 
 class Pixels(NamedTuple):
-    """An 8-bit grey image, row 0 at the top."""
+    """An 8-bit image, row 0 at the top."""
 
-    grey: NDArray[np.uint8]
-    """(rows, cols) 0 black, 255 white."""
+    colours: Channels
+    """(rows, cols, 1 or 3) grey, or red, green and blue; 0 black, 255 white."""
     alpha: NDArray[np.uint8] | None
     """(rows, cols) 0 transparent, 255 opaque; None where the file has no alpha channel."""
 
 
 def read_pixels(path: str | Path) -> Pixels:
-    """Read a PNG or a binary PGM or PPM file.
+    """Read a PNG, PGM or PPM file.
 
     Parameters
     ----------
@@ -44,13 +46,13 @@ def read_pixels(path: str | Path) -> Pixels:
     Returns
     -------
     Pixels
-        Its pixels. Colours are accepted where red, green and blue agree.
+        Its pixels.
 
     Raises
     ------
     InputError
         If the file is missing, damaged, truncated, larger than `MAX_FIELDS` pixels, of
-        another format, not of 8 bits or fewer a sample, has a palette or is coloured.
+        another format, or not of 8 bits or fewer a sample.
     """
     data = read_bytes(path)
     if data.startswith(PNG_SIGNATURE):
@@ -58,21 +60,43 @@ def read_pixels(path: str | Path) -> Pixels:
     elif data[:2] in NETPBM_CHANNELS:
         channels = _read_netpbm(path, data)
     else:
+        found = f"a file that begins with {data[:8]!r}"
+        raise InputError(path, found, "a PNG, PGM (P2, P5) or PPM (P3, P6)")
+    if channels.shape[2] in (2, 4):
+        return Pixels(channels[:, :, :-1], channels[:, :, -1])
+    return Pixels(channels, None)
+
+
+def read_grey(path: str | Path) -> NDArray[np.uint8]:
+    """Read the image of a weight map, see `read_pixels`.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file, relative to the current folder.
+
+    Returns
+    -------
+    (rows, cols) uint8
+        0 black, 255 white.
+
+    Raises
+    ------
+    InputError
+        As `read_pixels`, and if a pixel is coloured or there is an alpha channel.
+    """
+    colours, alpha = read_pixels(path)
+    require(alpha is None, path, "an image with an alpha channel", "one without")
+    grey = colours[:, :, 0]
+    coloured = (colours != colours[:, :, :1]).any(axis=2)
+    if coloured.any():
+        y, x = np.argwhere(coloured)[0]
         raise InputError(
-            path, f"a file that begins with {data[:8]!r}", "a PNG, or a binary PGM (P5) or PPM (P6)"
+            f"{path}, pixel ({x}, {y})",
+            f"RGB {colours[y, x].tolist()}",
+            "a shade of grey: equal red, green and blue",
         )
-    has_alpha = channels.shape[2] in (2, 4)
-    grey = channels[:, :, 0]
-    if channels.shape[2] >= 3:
-        coloured = (channels[:, :, 1] != grey) | (channels[:, :, 2] != grey)
-        if coloured.any():
-            y, x = np.argwhere(coloured)[0]
-            raise InputError(
-                f"{path}, pixel ({x}, {y})",
-                f"RGB {channels[y, x, :3].tolist()}",
-                "a shade of grey: equal red, green and blue",
-            )
-    return Pixels(grey, channels[:, :, -1] if has_alpha else None)
+    return grey
 
 
 def _check_size(path: str | Path, cols: int, rows: int) -> None:
@@ -98,6 +122,8 @@ def _read_netpbm(path: str | Path, data: bytes) -> Channels:
     require(largest == 255, path, f"largest value {largest}", "an image of values 0 to 255")
     raster = data[header.end() :]
     shape = rows, cols, NETPBM_CHANNELS[header.group(1)]
+    if header.group(1) in (b"P2", b"P3"):
+        raster = _values(path, raster)
     # One newline more than the raster: some map savers end their file like a text.
     if len(raster) == np.prod(shape) + 1 and raster.endswith(b"\n"):
         raster = raster[:-1]
@@ -110,6 +136,17 @@ def _read_netpbm(path: str | Path, data: bytes) -> Channels:
     return np.frombuffer(raster, dtype=np.uint8).reshape(shape)
 
 
+def _values(path: str | Path, text: bytes) -> bytes:
+    """Give the raster of numbers in text, a byte a number."""
+    text = re.sub(rb"#[^\r\n]*", b" ", text)
+    strange = re.search(rb"[^\d\s]+", text)
+    require(strange is None, path, repr(strange and strange[0][:20]), "numbers from 0 to 255")
+    values = np.fromstring(text.decode(), dtype=np.int64, sep=" ")
+    most = values.max(initial=0)
+    require(most <= 255, path, f"the value {most}", "numbers from 0 to 255")
+    return values.astype(np.uint8).tobytes()
+
+
 def _read_png(path: str | Path, data: bytes) -> Channels:
     # The header, read before Pillow is: nothing is decoded that is too large or of a
     # kind that Pillow would reduce to 8 bits without a word.
@@ -117,8 +154,7 @@ def _read_png(path: str | Path, data: bytes) -> Channels:
     cols, rows, bits, colour, interlaced = struct.unpack(">IIBBxxB", data[16:29])
     _check_size(path, cols, rows)
     _check_depth(path, bits)
-    require(colour != 3, path, "an image with a palette", "a grey image")
-    require(colour in PNG_CHANNELS, path, f"colour type {colour}", "a grey image")
+    require(colour in PNG_CHANNELS, path, f"colour type {colour}", "grey, RGB or a palette")
     require(not interlaced, path, "an interlaced PNG", "a PNG that is not interlaced")
 
     from PIL import Image  # here: planning on other maps does not wait for it
@@ -135,6 +171,11 @@ def _read_png(path: str | Path, data: bytes) -> Channels:
                 "an image with a transparent colour",
                 "an image without",
             )
+            if colour == PALETTE:
+                known = len(image.palette.palette) // 3 if image.palette else 0
+                found = int(np.asarray(image).max())
+                require(found < known, path, f"colour {found} of {known}", "one of the palette")
+                return np.asarray(image.convert("RGB"))
             pixels = image.convert("L") if image.mode == "1" else image
             return np.asarray(pixels).reshape(rows, cols, PNG_CHANNELS[colour])
     except InputError:

@@ -1,4 +1,6 @@
-"""Worlds of the BARN challenge as JSON (Perille et al. 2020, Daffan/the-barn-challenge).
+"""Worlds of the BARN challenge (Perille et al. 2020, Daffan/the-barn-challenge).
+
+Its own ``world_N.world`` files of the simulator Gazebo, or the same as JSON.
 
 A world is cylinders of radius 0.075 m on a lattice of 30 x 64 cells of 0.15 m, of which x
 runs from -4.5 m to 0, y from 0 to 9.6 m, up. A cylinder fills a cell, so a cell is a field.
@@ -6,24 +8,30 @@ The robot starts inside; its goal lies beyond the lattice, so the map goes on, f
 the goal's row. Start and goal lie on corners of cells: theirs is the field to the upper right.
 """
 
+import io
 import json
 import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
+from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import Checks, InputError, require
 from gapath.grid import Field, GridMap
-from gapath.mapio._input import as_field, read_text
+from gapath.mapio._input import as_field, read_bytes, read_text
 
-SUFFIXES: tuple[str, ...] = (".json",)
+SUFFIXES: tuple[str, ...] = (".json", ".world")
 
 RESOLUTION, RADIUS = 0.15, 0.075  # metres
 ORIGIN = (-4.5, 0.0, 0.0)
 COLS, ROWS = 30, 64
+START, GOAL = [-2.25, 3.0], [-2.25, 13.0]
+"""Where the challenge's robot starts in every world, and its goal, in metres."""
+PATH_ORIGIN = (-4.575, 5.075)
+"""Where the cell (0, 0) of a ``path_N.npy`` has its centre, in metres."""
 MAX_ROWS = 1000
 """Rows of the longest map: how far off a goal may lie."""
 MAX_WORLD_BYTES = 1 << 20
@@ -39,14 +47,18 @@ class Reader:
     Parameters
     ----------
     path : str
-        The JSON file: ``cylinders_xyr``, a list of [x, y, radius], ``start``, [x, y] or
-        [x, y, heading], and ``goal``, [x, y], in metres; other keys are passed over.
+        A ``.world`` file: SDF, whose models are cylinders or planes. Or a JSON file:
+        ``cylinders_xyr``, a list of [x, y, radius], ``start``, [x, y] or [x, y, heading], and
+        ``goal``, [x, y], in metres; other keys are passed over.
     start, target : [x, y], optional
-        Fields to go from and to, instead of the world's own.
+        Fields to go from and to, instead of the scenario's or the world's own.
     free_weight : float
         Weight of free fields, in [0, 1).
     inflation : int
         Fields by which obstacles grow to all sides, for a robot that is no point.
+    scenario : str, optional
+        The world's ``path_N.npy``: start and target are the first and the last cell of this path
+        through the world, instead of places before and behind it.
     """
 
     path: str
@@ -54,6 +66,7 @@ class Reader:
     target: list[int] | None
     free_weight: float
     inflation: int
+    scenario: str | None
 
     def __post_init__(self) -> None:
         check = Checks(self, "map")
@@ -71,13 +84,17 @@ class Reader:
         Raises
         ------
         InputError
-            If the file cannot be read, is no JSON, lacks a key, has a value of a wrong type
-            or range, a cylinder of another radius or off the lattice, or if its start or
-            goal lies outside the map or on an obstacle.
+            If a file cannot be read, is no JSON, SDF or path, lacks a key, has a value of a
+            wrong type or range, a cylinder of another radius or off the lattice, another
+            obstacle, or if its start or goal lies outside the map or on an obstacle.
         """
-        world = _read_json(self.path)
-        start = _cell(f"{self.path}, start", _numbers(self.path, world, "start", (2, 3)), MAX_ROWS)
-        goal = _cell(f"{self.path}, goal", _numbers(self.path, world, "goal", (2,)), MAX_ROWS)
+        sdf = self.path.lower().endswith(".world")
+        world = _read_sdf(self.path) if sdf else _read_json(self.path)
+        if self.scenario is not None:
+            world |= _read_path(self.scenario)
+        named = self.scenario or self.path
+        start = _cell(f"{named}, start", _numbers(named, world, "start", (2, 3)), MAX_ROWS)
+        goal = _cell(f"{named}, goal", _numbers(named, world, "goal", (2,)), MAX_ROWS)
         rows = max(ROWS, start[1] + 1, goal[1] + 1)
         blocked = np.zeros((rows, COLS), dtype=bool)
         for number, cylinder in enumerate(_list(self.path, world, "cylinders_xyr")):
@@ -87,7 +104,7 @@ class Reader:
         for key, (x, y), setting in (("start", start, self.start), ("goal", goal, self.target)):
             require(
                 setting is not None or not blocked[y, x],
-                f"{self.path}, {key}",
+                f"{named}, {key}",
                 f"{world[key]}, on an obstacle",
                 "a free place; name another field by map.start or map.target",
             )
@@ -139,6 +156,58 @@ def _read_json(path: str) -> dict[str, Any]:
     if not isinstance(world, dict):
         raise InputError(path, _shown(world), expected)
     return world
+
+
+def _read_sdf(path: str) -> dict[str, Any]:
+    """Read a world of Gazebo as what a JSON file holds; what its state repeats is passed over."""
+    text = read_text(path, MAX_WORLD_BYTES)
+    expected = "a BARN world: SDF with cylinders"
+    require("<!" not in text.replace("<!--", ""), path, "a declaration of XML", expected)
+    try:
+        root = ElementTree.fromstring(text)
+    except (ElementTree.ParseError, ValueError) as error:
+        raise InputError(path, f"text that is no XML ({error})", expected) from error
+    require(root.tag == "sdf" and root.find("world") is not None, path, f"<{root.tag}>", expected)
+    require(root.find("world/include") is None, path, "<include>", expected)
+    cylinders = []
+    for number, model in enumerate(root.iterfind("world/model")):
+        where = f"{path}, model {model.get('name', number)}"
+        shapes = [
+            shape for geometry in model.iterfind(".//collision/geometry") for shape in geometry
+        ]
+        kinds = {shape.tag for shape in shapes}
+        require(kinds <= {"cylinder", "plane"}, where, ", ".join(sorted(kinds)), expected)
+        own, *inner = [_floats(where, pose.text) for pose in model.iter("pose")] or [[0.0] * 6]
+        require(not any(map(any, inner)), where, "a pose within the model", "one of the model only")
+        cylinders += [
+            [*own[:2], *_floats(where, shape.findtext("radius"))]
+            for shape in shapes
+            if shape.tag == "cylinder"
+        ]
+    return {"cylinders_xyr": cylinders, "start": START, "goal": GOAL}
+
+
+def _floats(where: str, text: str | None) -> list[float]:
+    try:
+        return [float(word) for word in (text or "").split()]
+    except ValueError as error:
+        raise InputError(where, repr(text)[:80], "numbers in metres") from error
+
+
+def _read_path(path: str) -> dict[str, list[float]]:
+    """Read the ends of a ``path_N.npy``: (n, 2) cells, of which (0, 0) is at `PATH_ORIGIN`."""
+    try:
+        cells = np.load(io.BytesIO(read_bytes(path, MAX_WORLD_BYTES)), allow_pickle=False)
+    except InputError:
+        raise
+    except (ValueError, EOFError, OSError) as error:
+        raise InputError(path, "no array of numbers", "a path_N.npy of the challenge") from error
+    found = f"an array of {getattr(cells, 'dtype', type(cells).__name__)}, {np.shape(cells)}"
+    good = isinstance(cells, np.ndarray) and cells.dtype.kind in "iuf"
+    good = good and cells.ndim == 2 and cells.shape[1] == 2 and len(cells) > 0
+    require(good and bool(np.isfinite(cells).all()), path, found, "cells, a finite (n, 2)")
+    ends = cells[[0, -1]] * RESOLUTION + PATH_ORIGIN
+    return {"start": ends[0].tolist(), "goal": ends[1].tolist()}
 
 
 def _list(path: str, world: dict[str, Any], key: str) -> list[Any]:

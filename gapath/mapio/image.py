@@ -10,10 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
-from gapath.errors import require
 from gapath.grid import GridMap
 from gapath.mapio._input import as_field
-from gapath.mapio._pixels import read_pixels
+from gapath.mapio._pixels import read_grey
 
 SUFFIXES: tuple[str, ...] = (".png", ".ppm")
 
@@ -57,18 +56,12 @@ class Reader:
         Raises
         ------
         InputError
-            If the file is not such an image (`gapath.mapio._pixels.read_pixels`).
+            If the file is not such an image (`gapath.mapio._pixels.read_grey`).
         """
-        pixels = read_pixels(self.path)
-        require(
-            pixels.alpha is None,
-            self.path,
-            "an image with an alpha channel",
-            "an 8-bit grey image without alpha",
-        )
+        grey = read_grey(self.path)
         return GridMap(
             name=Path(self.path).stem,
-            weights=(WEIGHTS[::-1] if self.invert else WEIGHTS)[pixels.grey],
+            weights=(WEIGHTS[::-1] if self.invert else WEIGHTS)[grey],
             start=as_field("map.start", self.start),
             target=as_field("map.target", self.target),
             source="image",

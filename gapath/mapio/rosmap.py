@@ -1,7 +1,7 @@
 """Maps of ROS's ``map_server``: a YAML file and its PGM or PNG image.
 
 Pixels become occupancies as nav2's ``map_server`` makes them. With p = 1 - shade (p = shade
-under ``negate``), shade in [0, 1] from black to white:
+under ``negate``), shade in [0, 1] from black to white, the mean of red, green and blue:
 
 - ``trinary``: p > ``occupied_thresh`` is occupied, p < ``free_thresh`` free, else unknown;
   an alpha channel counts as a fourth colour in the mean that is the shade;
@@ -10,6 +10,8 @@ under ``negate``), shade in [0, 1] from black to white:
 - ``raw``: the pixel value is the occupancy in per cent, above 100 unknown; neither
   ``negate`` nor thresholds play a part.
 
+What is both, under an ``occupied_thresh`` below ``free_thresh``, is occupied.
+
 Occupancies become weights: 100 % is the obstacle, 1 exactly; q < 100 % is
 ``free_weight`` + (1 - ``free_weight``) q / 100, so free is ``free_weight`` and 99 % just
 below 1; unknown is a setting. Row 0 is the top, the origin the lower left corner.
@@ -17,7 +19,7 @@ below 1; unknown is a setting. Row 0 is the top, the origin the lower left corne
 
 import math
 from dataclasses import dataclass
-from pathlib import Path, PurePosixPath, PureWindowsPath
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -37,7 +39,9 @@ OCCUPIED, UNKNOWN = 100.0, -1.0
 MAX_YAML_BYTES = 1 << 16
 
 Levels = NDArray[np.float64]
-"""A value for each pair of grey and alpha, (256, 256)."""
+"""A value for each pair of brightness and alpha, (766, 256); a brightness is red, green and blue
+added up."""
+NEGATE = {"0": False, "1": True, "false": False, "true": True, "no": False, "yes": True}
 
 
 @dataclass(frozen=True)
@@ -55,7 +59,7 @@ class Description:
     negate : bool
         Whether white means occupied.
     occupied_thresh, free_thresh : float
-        Thresholds of the occupancy, in [0, 1].
+        Thresholds of the occupancy, in [0, 1]; without a meaning in mode "raw".
     mode : str
         One of `MODES`.
     """
@@ -138,9 +142,11 @@ class Reader:
 
 
 def _look_up(levels: Levels, pixels: Pixels) -> NDArray[np.float64]:
-    if pixels.alpha is None:
-        return levels[:, 255][pixels.grey]
-    return levels[pixels.grey, pixels.alpha]
+    channels = pixels.colours.shape[2]
+    brightness = pixels.colours.sum(axis=2, dtype=np.intp) * (3 // channels)
+    alpha = 255 if pixels.alpha is None else pixels.alpha
+    weights: NDArray[np.float64] = levels[brightness, alpha]
+    return weights
 
 
 def occupancy(description: Description, has_alpha: bool) -> Levels:
@@ -155,19 +161,20 @@ def occupancy(description: Description, has_alpha: bool) -> Levels:
 
     Returns
     -------
-    (256, 256) float64
-        By grey and alpha: 0 to 100 in per cent, or `UNKNOWN`.
+    (766, 256) float64
+        By brightness, 0 to 765, and alpha: 0 to 100 in per cent, or `UNKNOWN`.
     """
-    grey, alpha = np.meshgrid(np.arange(256.0), np.arange(256.0), indexing="ij")
+    brightness, alpha = np.meshgrid(np.arange(766.0), np.arange(256.0), indexing="ij")
     if description.mode == "raw":
+        grey = np.rint(brightness / 3)
         return np.where(grey <= OCCUPIED, grey, UNKNOWN)
-    mean = (3 * grey + alpha) / 4 if has_alpha and description.mode == "trinary" else grey
+    counts = has_alpha and description.mode == "trinary"
+    mean = (brightness + alpha) / 4 if counts else brightness / 3
     shade = mean / 255
     p = shade if description.negate else 1.0 - shade
     free, occupied = description.free_thresh, description.occupied_thresh
-    if description.mode == "trinary":
-        between = np.full_like(p, UNKNOWN)
-    else:
+    between = np.full_like(p, UNKNOWN)
+    if description.mode == "scale" and free != occupied:
         between = np.rint((p - free) / (occupied - free) * 100)
     per_cent = np.where(p > occupied, OCCUPIED, np.where(p < free, 0.0, between))
     if description.mode == "scale":
@@ -214,26 +221,29 @@ def read_description(path: str) -> Description:
         "three numbers [x, y, yaw] (metres, metres, radians)",
     )
     x, y, yaw = (_number(f"{path}, origin", value) for value in origin)
-    require(content["negate"] in (0, 1), f"{path}, negate", _shown(content["negate"]), "0 or 1")
+    negate = NEGATE.get(_word(content["negate"]))
+    if negate is None:
+        raise InputError(f"{path}, negate", _shown(content["negate"]), "0 or 1")
     occupied = _number(f"{path}, occupied_thresh", content["occupied_thresh"])
     free = _number(f"{path}, free_thresh", content["free_thresh"])
+    mode = _word(content.get("mode", "trinary"))
     require(
-        0 <= free < occupied <= 1,
-        f"{path}, free_thresh and occupied_thresh",
-        f"{free} and {occupied}",
-        "0 <= free_thresh < occupied_thresh <= 1",
+        mode in MODES, f"{path}, mode", _shown(content.get("mode")), f"one of {', '.join(MODES)}"
     )
-    mode = content.get("mode", "trinary")
-    require(mode in MODES, f"{path}, mode", _shown(mode), f"one of {', '.join(MODES)}")
+    if mode != "raw":
+        for key, value in (("free_thresh", free), ("occupied_thresh", occupied)):
+            require(0 <= value <= 1, f"{path}, {key}", value, "a number from 0 to 1")
     image = _image_path(path, content["image"])
-    return Description(
-        image, resolution, (x, y, yaw), bool(content["negate"]), occupied, free, mode
-    )
+    return Description(image, resolution, (x, y, yaw), negate, occupied, free, mode)
 
 
 def _shown(value: Any) -> str:
     # Aliases make a small YAML's value endless when printed: name the type alone.
     return repr(value) if isinstance(value, str | int | float | None) else type(value).__name__
+
+
+def _word(value: Any) -> str:
+    return str(value).lower() if isinstance(value, str | int) else ""
 
 
 def _number(where: str, value: Any) -> float:
@@ -248,12 +258,9 @@ def _number(where: str, value: Any) -> float:
 
 def _image_path(path: str, name: Any) -> Path:
     """Find the image, which must not lie outside the YAML file's folder."""
-    where = f"{path}, image"
-    inside = "a file in the folder of the YAML file, given relative to it"
+    where, inside = f"{path}, image", "a file in the folder of the YAML file"
     if not isinstance(name, str) or name == "":
         raise InputError(where, _shown(name), inside)
-    absolute = PurePosixPath(name).is_absolute() or PureWindowsPath(name).is_absolute()
-    require(not absolute, where, name, inside)
     folder = Path(path).parent.resolve()
     try:
         found = (folder / name).resolve()

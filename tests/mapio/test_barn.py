@@ -1,5 +1,6 @@
 """The reader of BARN worlds, and what it refuses."""
 
+import io
 import json
 
 import numpy as np
@@ -32,8 +33,53 @@ def save(folder, content):
     return str(path)
 
 
-def read(path, start=None, target=None, free_weight=0.5, inflation=0):
-    return Reader(path, start, target, free_weight, inflation).read()
+def read(path, start=None, target=None, free_weight=0.5, inflation=0, scenario=None):
+    return Reader(path, start, target, free_weight, inflation, scenario).read()
+
+
+FLOOR = """<model name='ground_plane'><static>1</static><link name='link'>
+  <collision name='collision'><geometry><plane><size>100 100</size></plane></geometry></collision>
+</link></model>"""
+
+
+def model(number, x, y, radius, shape="cylinder"):
+    """A model as the challenge writes it, with what else it says left out."""
+    geometry = (
+        f"<geometry><{shape}><radius>{radius:f}</radius><length>1</length></{shape}></geometry>"
+    )
+    return f"""<model name='unit_cylinder_{number}'>
+  <static>1</static>
+  <pose frame=''>{x:f} {y:f} 0.000000 0.000000 0.000000 0.000000</pose>
+  <link name='link'>
+    <inertial><mass>1</mass></inertial>
+    <collision name='collision'>{geometry}<max_contacts>10</max_contacts></collision>
+    <visual name='visual'>{geometry}</visual>
+  </link>
+</model>
+"""
+
+
+def sdf(cylinders, floor=FLOOR):
+    """A world_N.world of these cylinders, made in the format of the challenge's own."""
+    models = "".join(model(n, *c) for n, c in enumerate(cylinders))
+    state = "".join(
+        f"<model name='unit_cylinder_{n}'><pose frame=''>{c[0]:f} {c[1]:f} 0 0 0 0</pose>"
+        f"<link name='link'><pose frame=''>{c[0]:f} {c[1]:f} 0 0 0 0</pose></link></model>"
+        for n, c in enumerate(cylinders)
+    )
+    return f"""<sdf version='1.6'><world name='default'>
+<light name='sun' type='directional'><pose frame=''>0 0 10 0 -0 0</pose></light>
+{floor}{models}<state world_name='default'>{state}</state></world></sdf>"""
+
+
+def save_world(folder, text):
+    (folder / "world_0.world").write_text(text, "utf-8")
+    return str(folder / "world_0.world")
+
+
+def save_path(folder, cells):
+    np.save(folder / "path_0.npy", np.array(cells))
+    return str(folder / "path_0.npy")
 
 
 @given(cells=CELLS)
@@ -48,6 +94,99 @@ def test_a_cylinder_fills_its_cell(tmp_path_factory, cells):
     fields = np.argwhere(grid.obstacles)[:, ::-1].astype(np.int32)
     centres = {tuple(c) for c in np.round(grid.to_metres(fields), 4)}
     assert centres == {tuple(np.round(c[:2], 4)) for c in cylinders}
+
+
+@given(cells=CELLS)
+def test_a_world_file_gives_the_map_that_json_gives(tmp_path_factory, cells):
+    cells -= {(15, 20)}
+    folder = tmp_path_factory.mktemp("barn")
+    cylinders = [cylinder(i, j) for i, j in sorted(cells)]
+    plain = read(save(folder, world(cylinders_xyr=cylinders)))
+    same_map(read(save_world(folder, sdf(cylinders))), plain)
+
+
+def same_map(one, other):
+    assert (one.weights == other.weights).all() and one.weights.shape == other.weights.shape
+    assert (one.start, one.target, one.origin) == (other.start, other.target, other.origin)
+    assert one.resolution == other.resolution
+
+
+def test_a_path_gives_start_and_target(tmp_path):
+    """Cell (x, y) of a path is column x - 1, and row 33 + y from the bottom."""
+    path = save_world(tmp_path, sdf([cylinder(0, 0)]))
+    cells = [[26, 0], [25, 1], [1, 29]]
+    for scenario in (save_path(tmp_path, cells), save_path(tmp_path, np.array(cells, float))):
+        grid = read(path, scenario=scenario)
+        assert (grid.start, grid.target) == ((25, 63 - 33), (0, 63 - 62))
+        assert grid.weights.shape == (64, 30)
+        assert read(path, start=[1, 2], scenario=scenario).start == (1, 2)
+        assert read(save(tmp_path, world()), scenario=scenario).target == (0, 1)
+
+
+def npy(array, **more):
+    file = io.BytesIO()
+    np.save(file, array, **more)
+    return file.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"", "0 bytes"),
+        (b"hello", "got no array of numbers, expected a path_N.npy"),
+        (npy(np.zeros((3, 2), int))[:-5], "no array of numbers"),
+        (npy(np.array([{}, {}], dtype=object), allow_pickle=True), "no array of numbers"),
+        (npy(np.zeros((3, 3), int)), r"got an array of int64, \(3, 3\), expected cells"),
+        (npy(np.zeros((0, 2), int)), r"got an array of int64, \(0, 2\)"),
+        (npy(np.zeros(4, int)), r"got an array of int64, \(4,\)"),
+        (npy(np.full((2, 2), np.nan)), "expected cells, a finite"),
+        (npy(np.zeros((2, 2), "U1")), "got an array of <U1"),
+        (
+            npy(np.array([[0, 5], [3, 3]])),
+            r"path_0.npy, start: got \[-4.575, 5.825\], expected a pl",
+        ),
+        (npy(np.array([[3, 3], [3, -99]])), "path_0.npy, goal: .* expected a place with"),
+    ],
+)
+def test_bad_paths_are_refused(tmp_path, content, message):
+    scenario = tmp_path / "path_0.npy"
+    scenario.write_bytes(content)
+    with pytest.raises(InputError, match=message):
+        read(save(tmp_path, world()), scenario=str(scenario))
+
+
+ONE = sdf([cylinder(3, 3)])
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "0 bytes"),
+        ("hello", "no XML"),
+        (ONE[:-9], "no XML"),
+        ("<!DOCTYPE a [<!ENTITY b 'c'>]>" + ONE, "got a declaration of XML, expected a BARN world"),
+        ("<world/>", "got <world>, expected a BARN world: SDF with cylinders"),
+        ("<sdf/>", "got <sdf>, expected"),
+        (sdf([], "<include><uri>model://house</uri></include>"), "got <include>"),
+        (sdf([], model(9, 0, 0, 1, "box")), "model unit_cylinder_9: got box, expected"),
+        (sdf([[-4.4, 0.075, 0.075]]), r"cylinders_xyr\[0\]: .* radius 0.075 and a centre"),
+        (sdf([[-4.425, 0.075, 0.5]]), r"cylinders_xyr\[0\]: .* radius 0.075 and a centre"),
+        (sdf([[0.5, 0.075, 0.075]]), r"cylinders_xyr\[0\]: .* expected a place with"),
+        (ONE.replace("<radius>0.075000</radius>", ""), r"cylinders_xyr\[0\]: .* list of 3"),
+        (ONE.replace("<radius>0.075000", "<radius>wide"), "model unit_cylinder_0: got 'wide'"),
+        (ONE.replace("frame=''>-3", "frame=''>x"), "unit_cylinder_0: got 'x.*', expected numbers"),
+        (
+            ONE.replace("<inertial>", "<pose>1 0 0 0 0 0</pose><inertial>"),
+            "a pose within the model",
+        ),
+        (sdf([cylinder(15, 20)]), r"start: got \[-2.25, 3.0\], on an obstacle"),
+    ],
+)
+def test_bad_world_files_are_refused(tmp_path, text, message):
+    path = save_world(tmp_path, text)
+    with pytest.raises(InputError, match=message) as caught:
+        read(path)
+    assert str(caught.value).startswith(path)
 
 
 @given(cells=CELLS, fields=st.integers(0, 4))
@@ -146,17 +285,26 @@ def test_settings_out_of_range_are_refused(values, message):
         read("no such file", **values)
 
 
-def test_json_files_are_read_as_barn_worlds():
-    assert readers()[".json"] == "barn"
+def test_json_and_world_files_are_read_as_barn_worlds():
+    assert readers()[".json"] == readers()[".world"] == "barn"
 
 
-def test_the_six_worlds_can_be_crossed(data):
+def test_the_six_worlds_can_be_crossed(data, tmp_path):
     paths = sorted((data / "barn").glob("*.json"))
     if not paths:
         pytest.skip(f"no worlds in {data / 'barn'}")
     for path in paths:
         grid = read(str(path))
-        cylinders = json.loads(path.read_text("utf-8"))["cylinders_xyr"]
+        content = json.loads(path.read_text("utf-8"))
+        cylinders = content["cylinders_xyr"]
+        world_file = save_world(tmp_path, sdf(cylinders))
+        same_map(read(world_file), grid)
+        # the challenge's own path, which leads from the first row of the world to its last
+        cells = np.array(content["path_cells"])
+        ends = read(world_file, scenario=save_path(tmp_path, cells))
+        assert (ends.start[1], ends.target[1]) == (30, 1)
+        assert not ends.obstacles[30 - cells[:, 1], cells[:, 0] - 1].any()
+        assert ends.target == (cells[-1, 0] - 1, 1)
         assert grid.obstacles.sum() == len({tuple(c) for c in cylinders})
         assert (grid.start, grid.target) == ((15, 66), (15, 0))
         assert shortest_path(Problem(grid, grid.start, grid.target)).feasible

@@ -107,7 +107,7 @@ def test_unknown_fields_take_a_word_or_a_weight(value):
     [
         ("map", "file", "unknown", "map=rosmap"),
         ("map", "file", "invert", "map=image"),
-        ("map", "asciigrid", "scenario", "map=movingai"),
+        ("map", "asciigrid", "scenario", "map=barn or map=movingai"),
         ("map", "rosmap", "inflation", "map=barn"),
         ("planner", "astar", "ga2_profile", "planner=visibility_ga or planner=visibility_ga_c"),
     ],

@@ -1,5 +1,6 @@
 import os
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
@@ -61,13 +62,16 @@ def test_top_row_lies_highest_in_metres(tmp_path):
     assert centres.tolist() == [[11.0, 23.0], [15.0, 21.0]]
 
 
-def slow_occupancy(description: Description, grey: int, alpha: int | None) -> float:
+def slow_occupancy(
+    description: Description, colour: tuple[int, int, int], alpha: int | None
+) -> float:
     """Say what nav2's map_server makes of one pixel."""
     if description.mode == "raw":
-        return grey if grey <= 100 else -1
+        per_cent = round(Fraction(sum(colour), 3))
+        return per_cent if per_cent <= 100 else -1
     if description.mode == "scale" and alpha is not None and alpha != 255:
         return -1
-    channels = [grey] * 3
+    channels = [*colour]
     if description.mode == "trinary" and alpha is not None:
         channels.append(alpha)
     shade = sum(channels) / len(channels) / 255
@@ -77,22 +81,80 @@ def slow_occupancy(description: Description, grey: int, alpha: int | None) -> fl
         return 100
     if p < low:
         return 0
-    return -1 if description.mode == "trinary" else round((p - low) / (high - low) * 100)
+    if description.mode == "trinary" or low == high:
+        return -1
+    return round((p - low) / (high - low) * 100)
+
+
+COLOURS = st.tuples(*3 * [st.integers(0, 255)])
 
 
 @given(
-    st.tuples(st.floats(0, 1), st.floats(0, 1)).filter(lambda pair: pair[0] != pair[1]).map(sorted),
+    st.tuples(st.floats(0, 1), st.floats(0, 1)) | st.sampled_from([(0.4, 0.4), (0, 0), (1, 0)]),
     st.sampled_from(["trinary", "scale", "raw"]),
     st.booleans(),
-    st.lists(st.tuples(st.integers(0, 255), st.none() | st.integers(0, 255)), min_size=20),
+    st.lists(st.tuples(COLOURS, st.none() | st.integers(0, 255)), min_size=20),
 )
 def test_occupancy_equals_its_slow_twin(thresholds, mode, negate, pixels):
     free, occupied = thresholds
     description = Description(Path("m.png"), 1.0, (0.0, 0.0, 0.0), negate, occupied, free, mode)
     plain, with_alpha = occupancy(description, False), occupancy(description, True)
-    for grey, alpha in pixels:
-        found = plain[grey, 255] if alpha is None else with_alpha[grey, alpha]
-        assert found == slow_occupancy(description, grey, alpha)
+    for colour, alpha in pixels:
+        at = sum(colour)
+        found = plain[at, 255] if alpha is None else with_alpha[at, alpha]
+        assert found == slow_occupancy(description, colour, alpha)
+
+
+def test_colours_count_as_their_mean(tmp_path):
+    pixels = np.array([[[254, 254, 254], [255, 255, 252], [255, 0, 0]]], dtype=np.uint8)
+    for image in ("m.png", "m.ppm"):
+        path = save(tmp_path, pixels, image=image)
+        assert replace(READER, path=path, unknown=0.75).read().weights.tolist() == [[0.5, 0.5, 1]]
+    pixels = np.array([[[50, 60, 40], [1, 1, 0], [255, 45, 3]]], dtype=np.uint8)
+    weights = replace(READER, path=save(tmp_path, pixels, image="m.png", mode="raw")).read().weights
+    assert weights.tolist() == [[0.75, 0.505, 1.0]]
+
+
+def test_a_palette_gives_colours(tmp_path):
+    image = Image.fromarray(np.array([[0, 1, 2]], dtype=np.uint8), "P")
+    image.putpalette([0, 0, 0, 254, 254, 254, 255, 0, 0])
+    path = save(tmp_path, image="m.png")
+    image.save(tmp_path / "m.png")
+    assert replace(READER, path=path).read().obstacles.tolist() == [[True, False, True]]
+
+
+def test_an_image_as_text(tmp_path):
+    path = save(tmp_path)
+    plain = replace(READER, path=path).read()
+    words = " ".join(map(str, GREY.ravel()))
+    (tmp_path / "m.pgm").write_text(f"P2\n# CREATOR: map_saver\n3 2\n255\n{words}\n")
+    assert replace(READER, path=path).read().digest == plain.digest
+
+
+@pytest.mark.parametrize(
+    ("keys", "weights"),
+    [
+        # occupied from p > 0.196, and free below 0.65 is what is left
+        ({"occupied_thresh": "0.196", "free_thresh": "0.65"}, [[1, 1, 1], [1, 0.5, 0.5]]),
+        ({"occupied_thresh": "0.65", "free_thresh": "0.65"}, [[1, 1, 0.5], [0.5, 0.5, 0.5]]),
+        ({"occupied_thresh": "0", "free_thresh": "1", "mode": "Scale"}, [[1, 1, 1], [1, 1, 1]]),
+        ({"occupied_thresh": "65", "free_thresh": "-9", "mode": "raw"},
+         [[0.5, 0.945, 0.95], [0.75, 0.75, 0.75]]),
+        ({"negate": "'0'"}, [[1, 1, 0.75], [0.75, 0.5, 0.5]]),
+        ({"negate": '"1"'}, [[0.5, 0.75, 0.75], [1, 1, 1]]),
+        ({"negate": "no"}, [[1, 1, 0.75], [0.75, 0.5, 0.5]]),
+        ({"mode": "TRINARY"}, [[1, 1, 0.75], [0.75, 0.5, 0.5]]),
+    ],
+)  # fmt: skip
+def test_thresholds_and_words_as_map_servers_take_them(tmp_path, keys, weights):
+    grid = replace(READER, path=save(tmp_path, **keys), unknown=0.75).read()
+    np.testing.assert_allclose(grid.weights, weights, rtol=0, atol=1e-15)
+
+
+def test_an_absolute_image_in_the_folder(tmp_path):
+    path = Path(save(tmp_path))
+    path.write_text(path.read_text().replace("image: m.pgm", f"image: {tmp_path / 'm.pgm'}"))
+    assert replace(READER, path=str(path)).read().cols == 3
 
 
 def test_alpha(tmp_path):
@@ -146,10 +208,12 @@ LAUGHS = "&a [x,x,x,x,x,x,x,x,x]\n" + "".join(
         ("origin", None, "origin: got nothing"),
         ("negate", "2", "negate: got 2, expected 0 or 1"),
         ("negate", "[]", "negate: got list"),
+        ("negate", "1.0", "negate: got 1.0, expected 0 or 1"),
+        ("negate", LAUGHS, "negate: got list"),
+        ("mode", LAUGHS, "mode: got list"),
         ("negate", None, "negate: got nothing"),
-        ("free_thresh", "0.65", "free_thresh and occupied_thresh: got 0.65 and 0.65"),
-        ("free_thresh", "-0.1", "free_thresh and occupied_thresh: got -0.1 and 0.65"),
-        ("occupied_thresh", "1.5", "got 0.196 and 1.5"),
+        ("free_thresh", "-0.1", "free_thresh: got -0.1, expected a number from 0 to 1"),
+        ("occupied_thresh", "65", "occupied_thresh: got 65.0, expected a number from 0 to 1"),
         ("occupied_thresh", ".nan", "occupied_thresh: got nan"),
         ("occupied_thresh", None, "occupied_thresh: got nothing"),
         ("mode", "ternary", "mode: got 'ternary', expected one of trinary, scale, raw"),
@@ -160,7 +224,7 @@ LAUGHS = "&a [x,x,x,x,x,x,x,x,x]\n" + "".join(
         ("image", "missing.pgm", "image: got missing.pgm, which is no file"),
         ("image", ".", "image: got ., which is no file"),
         ("image", "/etc/passwd", "image: got /etc/passwd, expected a file in the folder"),
-        ("image", "C:\\m.pgm", "image: got C:\\m.pgm, expected a file in the folder"),
+        ("image", "C:\\m.pgm", "image: got C:\\m.pgm, which is no file"),
         ("image", "../outside.pgm", "image: got ../outside.pgm, expected a file in the folder"),
         ("image", "link.pgm", "image: got link.pgm, expected a file in the folder"),
         ("image", "ring.pgm", "image: got"),
