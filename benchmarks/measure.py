@@ -7,7 +7,6 @@ import statistics
 import time
 from collections.abc import Callable, Sequence
 from importlib import metadata
-from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -16,6 +15,7 @@ from numpy.typing import NDArray
 import gapath
 from gapath.components import build
 from gapath.discovery import yaml_values
+from gapath.pipelines.report.machine import processor
 from gapath.planners import bspline_ga, visibility_ga
 from gapath.problem import Planner, Problem
 
@@ -122,15 +122,8 @@ def make_visibility_ga(**settings: Any) -> visibility_ga.Planner:
 
 def machine() -> Row:
     """Describe what the numbers were measured on."""
-    model = platform.processor() or platform.machine()
-    cpuinfo = Path("/proc/cpuinfo")
-    if cpuinfo.exists():
-        for line in cpuinfo.read_text("utf-8").splitlines():
-            if line.startswith("model name"):
-                model = line.partition(":")[2].strip()
-                break
     return {
-        "CPU": model,
+        "CPU": processor(),
         "cores": os.cpu_count(),
         "load": round(os.getloadavg()[0], 2) if hasattr(os, "getloadavg") else "unknown",
         "system": platform.system(),

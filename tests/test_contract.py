@@ -199,8 +199,10 @@ def test_recording_changes_no_result(name, tmp_path):
         [components.build("recorder", yaml_values("recorder", name), "recorder")],
     ):
         folder = tmp_path / str(len(recorders))
-        outcome = execute(make_run(recorders, make_planner("ga1"), folder), "test", progress=False)
-        rows.append([(r.status, r.cost, r.epochs, r.evaluations) for r in outcome.rows])
+        execution = execute(
+            make_run(recorders, make_planner("ga1"), folder), "test", progress=False
+        )
+        rows.append([(r.status, r.cost, r.epochs, r.evaluations) for r in execution.rows])
     assert rows[0] == rows[1]
 
 

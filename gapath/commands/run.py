@@ -25,6 +25,7 @@ from gapath.discovery import OFFERS, conf_packages, kinds, with_setting
 from gapath.errors import InputError, require
 from gapath.runs.config import Run, conf_folder, make_run
 from gapath.runs.experiment import Execution, execute
+from gapath.store.records import State
 from gapath.task import find_task
 
 BAD_INPUT, FAILED, INTERRUPTED = 2, 1, 130
@@ -87,7 +88,7 @@ def job(config: DictConfig) -> None:
     try:
         check_used(overrides, config.task)
         run = make_run(config, hydra.runtime.choices, settings_of(overrides))
-        outcome = execute(run, command(overrides, hydra.runtime.config_sources))
+        execution = execute(run, command(overrides, hydra.runtime.config_sources))
     except BAD_CONFIGURATION as error:
         fail(complain(error), sweep)
     except Exception:
@@ -95,7 +96,7 @@ def job(config: DictConfig) -> None:
         fail(FAILED, sweep)
     else:
         try:
-            print(describe(run, outcome, short=sweep), flush=True)
+            print(describe(run, execution, short=sweep), flush=True)
         except BrokenPipeError:  # gapath ... | head: the run is done, nobody reads on
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
@@ -162,14 +163,14 @@ def complain(error: Exception) -> int:
     return BAD_INPUT
 
 
-def describe(run: Run, outcome: Execution, short: bool) -> str:
+def describe(run: Run, execution: Execution, short: bool) -> str:
     """Tell how a run ended.
 
     Parameters
     ----------
     run : Run
         What was done.
-    outcome : Execution
+    execution : Execution
         What came of it.
     short : bool
         One line instead of a table.
@@ -182,13 +183,13 @@ def describe(run: Run, outcome: Execution, short: bool) -> str:
     grid = run.problem.map
     instance = f"#{grid.instance}" if grid.instance else ""
     what = f"{grid.name}{instance} {run.method.name}"
-    if outcome.state == "skipped":
-        return f"{what}: skipped, {outcome.folder} is whole (force=true runs it again)"
-    if outcome.state == "busy":
-        return f"{what}: skipped, another process is working on {outcome.folder}"
-    rows = outcome.rows
+    if execution.state is State.SKIPPED:
+        return f"{what}: skipped, {execution.folder} is whole (force=true runs it again)"
+    if execution.state is State.BUSY:
+        return f"{what}: skipped, another process is working on {execution.folder}"
+    rows = execution.rows
     if short:
-        return f"{what}: {run.task.line(rows)}, {outcome.folder}"
+        return f"{what}: {run.task.line(rows)}, {execution.folder}"
     marked = f" ({grid.source})" if grid.source == "reconstructed" else ""
     lines: dict[str, object] = {
         "map": f"{grid.name}{instance}{marked}, {grid.cols} x {grid.rows} fields"
@@ -203,7 +204,7 @@ def describe(run: Run, outcome: Execution, short: bool) -> str:
     lines[run.task.groups[0]] = run.method.name
     lines |= run.task.summary(rows)
     table = "\n".join(f"{name:<14}{value}" for name, value in lines.items())
-    files = "\n".join(f"  {outcome.folder / name}" for name in outcome.files)
+    files = "\n".join(f"  {execution.folder / name}" for name in execution.files)
     return f"{table}\n\nfiles\n{files}"
 
 

@@ -1,5 +1,7 @@
 """What a genetic algorithm's kernel keeps of each epoch, and the paper's numbers made of it."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,6 +11,15 @@ from gapath.kernels.lines import KEY_BITS, ONE_OBSTACLE
 EPOCHS = np.dtype([("key", np.int64), ("obstacle_sum", np.int64), ("cost_sum", np.int64)])
 """What happened in an epoch: the best individual's key, obstacle fields and cost (in units of
 1 / SCALE) of the whole population."""
+
+
+class History(NamedTuple):
+    """What a kernel keeps of a run of E epochs; epoch 1 is the initial population."""
+
+    epochs: NDArray[np.void]
+    """(E,) what happened in each: the kernel's `EPOCHS`."""
+    chromosomes: NDArray[np.int32]
+    """(E, genes) the best individual of each, as the kernel writes it."""
 
 
 @kernel

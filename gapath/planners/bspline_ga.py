@@ -15,12 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import Checks, require, require_memory
-from gapath.kernels.history import fitness_history
+from gapath.kernels.history import History, fitness_history
 from gapath.kernels.kg18.bspline import Basis, basis, rasterise, way_points
 from gapath.kernels.kg18.evolution import (
     KERNELS,
     SETTINGS,
-    EvolutionResult,
     Evolve,
     evaluations,
     run_evolutions,
@@ -238,7 +237,7 @@ class Planner:
         results = run_evolutions(*self.arguments(problem), streams, self.evolve)
         return [self._plan(result) for result in results]
 
-    def _plan(self, result: EvolutionResult) -> Plan:
+    def _plan(self, result: History) -> Plan:
         key = int(result.epochs["key"][-1])
         found = key < ONE_OBSTACLE
         return Plan(
@@ -253,10 +252,10 @@ class Planner:
             lines=partial(self._lines, result) if found else None,
         )
 
-    def _lines(self, result: EvolutionResult) -> NDArray[np.int32]:
+    def _lines(self, result: History) -> NDArray[np.int32]:
         return np.asarray(way_points(result.chromosomes[-1:], self.basis)[0])
 
-    def _evolution(self, result: EvolutionResult) -> Evolution:
+    def _evolution(self, result: History) -> Evolution:
         best, mean = fitness_history(result.epochs, self.population, self.vln, SCALE)
         return Evolution(
             best=best,

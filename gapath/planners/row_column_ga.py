@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import Checks, require, require_memory
-from gapath.kernels.history import fitness_history
+from gapath.kernels.history import History, fitness_history
 from gapath.kernels.lines import KEY_BITS, ONE_OBSTACLE
 from gapath.kernels.raster import polyline
 from gapath.kernels.rng import Stream, probability_threshold
-from gapath.kernels.s04.evolution import SETTINGS, EvolutionResult, run_evolution
+from gapath.kernels.s04.evolution import SETTINGS, run_evolution
 from gapath.kernels.s04.genotype import MAX_SIDE
 from gapath.kernels.units import SCALE
 from gapath.problem import Evolution, Plan, PlanStatus, Query, no_path
@@ -154,7 +154,7 @@ class Planner:
             trace=partial(self._evolution, result, view),
         )
 
-    def _evolution(self, result: EvolutionResult, view: SquareView) -> Evolution:
+    def _evolution(self, result: History, view: SquareView) -> Evolution:
         best, mean = fitness_history(result.epochs, self.population, self.vln, SCALE)
         return Evolution(
             best=best,

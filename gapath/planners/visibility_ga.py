@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import Checks, InputError, require_memory
-from gapath.kernels.m22.evolution import SETTINGS, EvolutionResult, path_length, run_evolution
+from gapath.kernels.history import History
+from gapath.kernels.m22.evolution import SETTINGS, path_length, run_evolution
 from gapath.kernels.m22.graph import END, START
 from gapath.kernels.rng import Stream, probability_threshold
 from gapath.kernels.units import SCALE
@@ -223,7 +224,7 @@ def _turns(chromosomes: NDArray[np.int32], ends_are_genes: bool) -> NDArray[np.i
 
 
 def _evolution(
-    result: EvolutionResult,
+    result: History,
     graph: VisibilityGraph,
     problem: Query,
     turns: NDArray[np.int32],

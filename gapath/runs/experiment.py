@@ -15,12 +15,13 @@ from gapath.runs.config import Run, task_of
 from gapath.store.durable import write_whole
 from gapath.store.keys import run_key, setting_hash, versions
 from gapath.store.records import (
+    CONFIG,
     MANIFEST,
-    SETTINGS,
     STATUS,
     TRIALS,
     FileEntry,
     Manifest,
+    State,
     Status,
     is_whole,
     now,
@@ -39,8 +40,8 @@ class Execution:
     ----------
     folder : Path
         The run folder.
-    state : str
-        done, infeasible, skipped (whole already) or busy (another process is at it).
+    state : State
+        DONE, INFEASIBLE, SKIPPED or BUSY.
     rows : list of dataclass
         The trials, of the task's row type; empty if the run was not executed.
     files : list of str
@@ -48,7 +49,7 @@ class Execution:
     """
 
     folder: Path
-    state: str
+    state: State
     rows: list[Any]
     files: list[str]
 
@@ -114,7 +115,7 @@ def execute(run: Run, command: str, progress: bool = True) -> Execution:
     Returns
     -------
     Execution
-        The state is "skipped" if the folder is whole already and not ``run.force``.
+        The state is SKIPPED if the folder is whole already and not ``run.force``.
 
     Raises
     ------
@@ -127,30 +128,30 @@ def execute(run: Run, command: str, progress: bool = True) -> Execution:
     try:
         with folder.lock():
             if is_whole(folder) and not run.force:
-                return Execution(folder.path, "skipped", [], [])
+                return Execution(folder.path, State.SKIPPED, [], [])
             return _execute_held(run, folder, key, command, progress)
     except Busy:
-        return Execution(folder.path, "busy", [], [])
+        return Execution(folder.path, State.BUSY, [], [])
 
 
 def _execute_held(run: Run, folder: RunFolder, key: str, command: str, progress: bool) -> Execution:
     started = now()
-    Status("running", started).write(folder)
+    Status(State.RUNNING, started).write(folder)
     try:
         config = yaml.safe_dump(nested(run.settings), sort_keys=False, allow_unicode=True)
-        write_whole(folder.path / SETTINGS, config.encode())
+        write_whole(folder.path / CONFIG, config.encode())
         optimum = run.task.optimum(run.problem)
         rows, recorded = _do_trials(run, optimum, folder, progress)
         write_whole(folder.path / TRIALS, _table(run, rows))
-        names = [SETTINGS, TRIALS, *recorded]
+        names = [CONFIG, TRIALS, *recorded]
         folder.keep_only([*names, STATUS, MANIFEST])
         _manifest(run, folder, key, command, names).write(folder)
-        state = "done" if optimum.feasible else "infeasible"
+        state = State.DONE if optimum.feasible else State.INFEASIBLE
         Status(state, started, now()).write(folder)
         return Execution(folder.path, state, rows, [*names, MANIFEST, STATUS])
     except BaseException as error:
         interrupted = isinstance(error, KeyboardInterrupt)
-        state = "interrupted" if interrupted else "failed"
+        state = State.INTERRUPTED if interrupted else State.FAILED
         message = "" if interrupted else traceback.format_exc()
         Status(state, started, now(), message).write(folder)
         raise

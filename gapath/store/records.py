@@ -5,6 +5,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 from datetime import UTC, datetime
+from enum import StrEnum
 from functools import cached_property
 from pathlib import Path
 from typing import Any, get_type_hints
@@ -15,10 +16,24 @@ from gapath.events import Settings
 from gapath.store.runfolder import LOCK, RunFolder, is_locked
 from gapath.store.settings import Value, read_settings
 
-STATUS, MANIFEST, SETTINGS, TRIALS = "status.json", "manifest.json", "config.yaml", "trials.parquet"
+STATUS, MANIFEST, CONFIG, TRIALS = "status.json", "manifest.json", "config.yaml", "trials.parquet"
 """Names of the files that every run folder has."""
 
-WHOLE = ("done", "infeasible")
+
+class State(StrEnum):
+    """How far a run is; SKIPPED (it is whole) and BUSY (another works on it) only of executions."""
+
+    RUNNING = "running"
+    DONE = "done"
+    INFEASIBLE = "infeasible"
+    FAILED = "failed"
+    INTERRUPTED = "interrupted"
+    UNKNOWN = "unknown"
+    SKIPPED = "skipped"
+    BUSY = "busy"
+
+
+WHOLE = (State.DONE, State.INFEASIBLE)
 """States of runs that were finished."""
 
 
@@ -141,8 +156,8 @@ class Status:
 
     Parameters
     ----------
-    state : str
-        queued, running, done, failed, interrupted or infeasible.
+    state : State
+        running, done, failed, interrupted or infeasible; unknown where none can be read.
     started : str
         When it began, as `now` gives it.
     finished : str or None
@@ -151,7 +166,7 @@ class Status:
         What went wrong.
     """
 
-    state: str
+    state: State
     started: str
     finished: str | None = None
     message: str = ""
@@ -172,16 +187,17 @@ class Status:
         Returns
         -------
         Status
-            What it says; "interrupted" where a run says that it is running, but nobody holds its
-            lock; "unknown" without one that can be read.
+            What it says; INTERRUPTED where a run says that it is running, but nobody holds its
+            lock; UNKNOWN without one that can be read.
         """
         try:
             content = _load(folder / STATUS)
         except InputError as error:
-            return cls("unknown", "", message=str(error))
-        state = str(content.get("state", "unknown"))
-        if state == "running" and not is_locked(folder / LOCK):
-            state = "interrupted"
+            return cls(State.UNKNOWN, "", message=str(error))
+        given = content.get("state")
+        state = State(given) if given in list(State) else State.UNKNOWN
+        if state is State.RUNNING and not is_locked(folder / LOCK):
+            state = State.INTERRUPTED
         texts = [str(content.get(name) or "") for name in ("started", "finished", "message")]
         return cls(state, texts[0], texts[1] or None, texts[2].strip())
 
@@ -218,7 +234,7 @@ class RunRecord:
         return f"{self.folder.parent.name}/{self.folder.name}"
 
     @property
-    def state(self) -> str:
+    def state(self) -> State:
         """How far it is."""
         return self.status.state
 
@@ -236,7 +252,7 @@ class RunRecord:
     @cached_property
     def settings(self) -> Settings:
         """Its settings, flat; raises InputError if they cannot be read."""
-        return read_settings(self.folder / SETTINGS)
+        return read_settings(self.folder / CONFIG)
 
     @property
     def bytes(self) -> int:
@@ -307,7 +323,7 @@ def find_runs(outputs: Path) -> list[RunRecord]:
         If there is no such folder, or no run in it.
     """
     require(outputs.is_dir(), outputs, "no such folder", "a folder with run folders")
-    marks = (STATUS, MANIFEST, SETTINGS, TRIALS)
+    marks = (STATUS, MANIFEST, CONFIG, TRIALS)
     folders = sorted(path for path in outputs.glob("*/*") if path.is_dir())
     runs = [read_record(path) for path in folders if any((path / mark).exists() for mark in marks)]
     require(bool(runs), outputs, "no runs", "run folders <experiment>/<key>/; `gapath` makes them")

@@ -29,7 +29,6 @@ RECONSTRUCTED = (
     "anew by a seeded generator from what the text says of each class."
 )
 
-
 DRAWN = (
     "The search spaces marked reconstructed are not the paper's: its figures are lost. They were "
     "drawn anew, each of the class that the paper's table shows, which is proved."

@@ -12,7 +12,7 @@ from tqdm import tqdm
 from gapath.discovery import kinds
 from gapath.errors import InputError, require
 from gapath.pipelines.reading.names import told_apart
-from gapath.store.records import SETTINGS, TRIALS, RunRecord
+from gapath.store.records import CONFIG, TRIALS, RunRecord
 from gapath.store.runfolder import RunFolder
 from gapath.task import columns, find_task, metrics
 
@@ -129,7 +129,7 @@ def _trials(run: RunRecord) -> pd.DataFrame:
             require(fits(trials[name]), f"{TRIALS}, {name}", "another type", what)
     if "stage_times_s" in trials:
         _check_stages(trials["stage_times_s"])
-    require(bool(run.settings), SETTINGS, "nothing", "settings")  # sections rely on them
+    require(bool(run.settings), CONFIG, "nothing", "settings")  # sections rely on them
     return trials.assign(key=run.folder.name)
 
 

@@ -78,9 +78,8 @@ def _list(outputs: Path) -> None:
 
 
 def _report(outputs: Path, folder: Path) -> None:
-    from gapath.pipelines.report.report import (
-        make_report,  # pandas and matplotlib take a second to start
-    )
+    # pandas and matplotlib take a second to start
+    from gapath.pipelines.report.report import make_report
 
     files, skipped = make_report(outputs, folder)
     for run, reason in skipped:

@@ -16,6 +16,7 @@ from gapath.pipelines.page.section import ALL, find_sections
 from gapath.pipelines.reading.collect import Skipped, read_trials
 from gapath.pipelines.report.bench import make_bench_page
 from gapath.pipelines.report.command import as_sweeps
+from gapath.pipelines.report.machine import processor
 from gapath.store.durable import write_whole
 from gapath.store.records import RunRecord, find_runs
 
@@ -144,15 +145,8 @@ def _versions(runs: Sequence[RunRecord]) -> list[tuple[str, str]]:
 
 
 def _machine() -> list[tuple[str, str]]:
-    model = platform.processor() or platform.machine()
-    cpuinfo = Path("/proc/cpuinfo")
-    if cpuinfo.exists():
-        for line in cpuinfo.read_text(encoding="utf-8", errors="replace").splitlines():
-            if line.startswith("model name"):
-                model = line.partition(":")[2].strip()
-                break
     return [
-        ("processor", model),
+        ("processor", processor()),
         ("cores", str(os.cpu_count())),
         ("system", f"{platform.system()} {platform.machine()}"),
         ("Python", platform.python_version()),

@@ -11,13 +11,14 @@ import yaml
 from gapath.pipelines.reading.collect import Collected, read_trials
 from gapath.runs.naming import Method
 from gapath.store.records import (
+    CONFIG,
     MANIFEST,
-    SETTINGS,
     STATUS,
     TRIALS,
     FileEntry,
     Manifest,
     RunRecord,
+    State,
     Status,
     find_runs,
 )
@@ -73,7 +74,7 @@ def sign(folder: Path, manifest: Manifest | None = None, **changes: Any) -> None
 
 
 def write_status(folder: Path, state: str, date: str = DATE, text: str = "") -> None:
-    Status(state, date, date, text).write(RunFolder(folder))
+    Status(State(state), date, date, text).write(RunFolder(folder))
 
 
 def write_run(
@@ -81,7 +82,7 @@ def write_run(
 ) -> None:
     """Write all of a run folder but its log, which is there already if it has one."""
     trials.to_parquet(folder / TRIALS)
-    (folder / SETTINGS).write_text(yaml.safe_dump(nested(settings)))
+    (folder / CONFIG).write_text(yaml.safe_dump(nested(settings)))
     sign(folder, manifest)
     write_status(folder, "done", date)
 
@@ -92,7 +93,7 @@ def record_of(
     """Make what is known of a run without its folder, its settings as if they had been read."""
     place = ("mine", key)
     manifest = manifest_of(Method(preset, changes), task, place, **known)
-    run = RunRecord(Path(*place), Status("done", DATE, DATE), manifest, "")
+    run = RunRecord(Path(*place), Status(State.DONE, DATE, DATE), manifest, "")
     vars(run)["settings"] = plan_settings(preset, changes)
     return run
 

@@ -7,7 +7,7 @@ import pytest
 from gapath.errors import InputError
 from gapath.pipelines.reading.listing import listing
 from gapath.pipelines.reading.logs import events_of, read_logs, run_start
-from gapath.store.records import find_runs
+from gapath.store.records import State, find_runs
 
 from .conftest import collect, sign, write_status
 
@@ -35,7 +35,7 @@ def test_a_whole_run(run):
     assert (row["map"], row["trials"], row["date"]) == ("kg18_test1", "5", "2026-01-01 12:00")
 
 
-@pytest.mark.parametrize("state", ["queued", "failed", "interrupted"])
+@pytest.mark.parametrize("state", ["failed", "interrupted"])
 def test_unfinished_runs_are_not_used_and_say_why(run, state):
     write_status(run, state, text="Traceback:\n  ...\nOSError: disk full")
     found = only(run)
@@ -59,6 +59,12 @@ def test_running_with_a_held_lock_is_running(run):
         fcntl.flock(lock, fcntl.LOCK_EX)
         assert only(run).state == "running"
     assert only(run).state == "interrupted"
+
+
+@pytest.mark.parametrize("said", ["finished", "", None, 1, ["done"]])
+def test_a_state_that_is_none_is_unknown_and_so_not_used(run, said):
+    (run / "status.json").write_text(json.dumps({"state": said, "started": "", "message": ""}))
+    assert (only(run).state, only(run).fault) == (State.UNKNOWN, "unknown")
 
 
 def test_no_status_is_unknown(run):

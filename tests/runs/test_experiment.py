@@ -45,8 +45,8 @@ def make_run(folder, planner="ga3", map_class="kg18_test2", trials=3, recorders=
 
 @pytest.mark.parametrize("planner", ["ga1", "ga3", "astar", "dijkstra"])
 def test_a_log_says_enough_to_do_the_run_again(planner, tmp_path, capsys):
-    outcome = execute(make_run(tmp_path, planner), "test")
-    log = outcome.folder / "run.mcap"
+    execution = execute(make_run(tmp_path, planner), "test")
+    log = execution.folder / "run.mcap"
     events = list(read_events(log))
     again = list(replay_events(events[0]))
     assert [type(event) for event in events[1:]] == [type(event) for event in again]
@@ -56,9 +56,11 @@ def test_a_log_says_enough_to_do_the_run_again(planner, tmp_path, capsys):
 def test_rows_and_log_agree(tmp_path):
     run = make_run(tmp_path, "ga1", "kg18_test3", trials=20)
     optimum = shortest_path(run.problem).cost
-    outcome = execute(run, "test")
-    rows = pq.read_table(outcome.folder / "trials.parquet").to_pylist()
-    finished = [e for e in read_events(outcome.folder / "run.mcap") if isinstance(e, TrialFinished)]
+    execution = execute(run, "test")
+    rows = pq.read_table(execution.folder / "trials.parquet").to_pylist()
+    finished = [
+        e for e in read_events(execution.folder / "run.mcap") if isinstance(e, TrialFinished)
+    ]
     assert len(rows) == len(finished) == 20
     assert {row["status"] for row in rows} == {"found", "not_found"}
     for row, event in zip(rows, finished, strict=True):

@@ -30,7 +30,7 @@ from gapath.driving.told import drive_events
 from gapath.events import Outcome
 from gapath.kernels.rng import Stream
 from gapath.problem import Plan, Planner, Problem
-from gapath.recorders import rerun
+from gapath.recorders import mcap, rerun
 from gapath.runs.config import Run, conf_folder
 from gapath.runs.experiment import execute, run_started
 from gapath.runs.naming import Method
@@ -111,7 +111,7 @@ def time_drives(map_name: str, trials: int) -> list[Row]:
     rows: list[Row] = []
     for name in NAVIGATORS:
         driven = [found[name] for found in results]
-        reached = sum(d.outcome is Outcome.REACHED for d in driven)
+        reached = sum(d.execution is Outcome.REACHED for d in driven)
         row: Row = {"map": map_name, "navigator": name, "drives": trials, "reached": reached}
         row["steps"] = quartiles([len(d.frames) - 1 for d in driven])
         row["drive ms"] = quartiles([1e3 * d.compute_time_s for d in driven])
@@ -128,9 +128,9 @@ def time_logs(map_name: str, trials: int) -> Row:
     log = build("recorder", yaml_values("recorder", "mcap"), "recorder")
     with tempfile.TemporaryDirectory() as folder:
         run = replace(make_drive_run(map_name, "kg18", trials), recorders=[log], output=folder)
-        microseconds, outcome = timed(lambda: execute(run, "", progress=False))
-        size = (outcome.folder / "run.mcap").stat().st_size / 1e6
-    total, driving = microseconds / 1e6, sum(row.compute_time_s for row in outcome.rows)
+        microseconds, execution = timed(lambda: execute(run, "", progress=False))
+        size = (execution.folder / mcap.FILE).stat().st_size / 1e6
+    total, driving = microseconds / 1e6, sum(row.compute_time_s for row in execution.rows)
     row: Row = {"map": map_name, "navigator": "kg18", "drives": trials}
     return row | {"total s": total, "driving s": driving, "rest s": total - driving, "log MB": size}
 

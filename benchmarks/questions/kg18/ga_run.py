@@ -28,9 +28,9 @@ from benchmarks.measure import (
     ratios,
 )
 from benchmarks.rivals import textbook
-from gapath.kernels.history import EPOCHS
+from gapath.kernels.history import EPOCHS, History
 from gapath.kernels.kg18 import evolution
-from gapath.kernels.kg18.evolution import EvolutionResult, Evolve, run_evolutions, usable_kernels
+from gapath.kernels.kg18.evolution import Evolve, run_evolutions, usable_kernels
 from gapath.kernels.rng import Stream, stream
 from gapath.pipelines.papers.kg18 import found_seconds
 from gapath.planners.bspline_ga import Planner
@@ -48,7 +48,7 @@ RUNS = 20
 
 def evolve_with(
     kernel: Evolve, planner: Planner, problem: Problem, streams: Stream
-) -> list[EvolutionResult]:
+) -> list[History]:
     """Run a batch by some kernel."""
     return run_evolutions(*planner.arguments(problem), streams.copy(), kernel)
 
@@ -58,7 +58,7 @@ def plan_with(kernel: Evolve, planner: Planner, problem: Problem, seed: int) -> 
     return planner.using(kernel).plan(problem, stream(seed))
 
 
-def check_identical(ours: list[EvolutionResult], other: list[EvolutionResult], name: str) -> None:
+def check_identical(ours: list[History], other: list[History], name: str) -> None:
     """Raise RuntimeError unless the runs of two batches have the same history."""
     for run, both in enumerate(zip(ours, other, strict=True)):
         if not all(np.array_equal(a, b) for a, b in zip(*both, strict=True)):

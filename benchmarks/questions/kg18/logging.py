@@ -36,7 +36,7 @@ BATCH = 100
 """Trials timed together: the log is flushed every four hundred messages, some hundred trials."""
 
 
-class Batch:
+class TrialLog:
     """Trials of one kind and the log that they go to."""
 
     def __init__(self, map_name: str, least: int, most: int, folder: str) -> None:
@@ -55,7 +55,7 @@ class Batch:
         self.recorder.open(folder)
         self.recorder.record(run_started(run, shortest_path(problem)))
 
-    def log(self) -> float:
+    def time(self) -> float:
         """Log every trial; give the mean time of one, microseconds."""
         fresh = [replace(trial, plan=replace(trial.plan)) for trial in self.trials]  # no history
         return timed(lambda: self._record(fresh))[0] / BATCH
@@ -69,16 +69,16 @@ class Batch:
 def measure(quick: bool) -> list[Row]:
     rows: list[Row] = []
     with tempfile.TemporaryDirectory() as folder:
-        batches = []
+        logs = []
         for i, kind in enumerate(KINDS):
             place = Path(folder) / str(i)
             place.mkdir()
-            batches.append(Batch(*kind, str(place)))
-        times = [[batch.log() for batch in batches] for _ in range(4 if quick else 41)][1:]
-        for batch in batches:
-            batch.recorder.close()
-    for kind, batch, sample in zip(KINDS, batches, zip(*times, strict=True), strict=True):
-        epochs = statistics.mean(trial.plan.epochs for trial in batch.trials)
+            logs.append(TrialLog(*kind, str(place)))
+        times = [[log.time() for log in logs] for _ in range(4 if quick else 41)][1:]
+        for log in logs:
+            log.recorder.close()
+    for kind, log, sample in zip(KINDS, logs, zip(*times, strict=True), strict=True):
+        epochs = statistics.mean(trial.plan.epochs for trial in log.trials)
         rows.append({"map": kind[0], "epochs": epochs, "us a trial": quartiles(sample)})
     medians = np.array([row["us a trial"].median for row in rows])
     slope, constant = np.polyfit([row["epochs"] for row in rows], medians, 1, w=1 / medians)

@@ -26,9 +26,9 @@ def _execute(run: Run, recorders: list[Recorder]) -> tuple[float, float]:
     """Execute a run in a temporary folder; give its wall time and its planning time, s."""
     with tempfile.TemporaryDirectory() as folder:
         begin = time.perf_counter()
-        outcome = execute(replace(run, recorders=recorders, output=folder), "", progress=False)
+        execution = execute(replace(run, recorders=recorders, output=folder), "", progress=False)
         seconds = time.perf_counter() - begin
-    return seconds, sum(row.plan_time_s for row in outcome.rows)
+    return seconds, sum(row.plan_time_s for row in execution.rows)
 
 
 def _run(problem: Problem, name: str, trials: int, threads: int) -> Run:

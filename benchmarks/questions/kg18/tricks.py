@@ -2,9 +2,8 @@
 
 The same work "with" it and "without", in turn, on kg18_test4 (100 x 50 fields) with GA 3's
 settings unless the row says otherwise; both give the same results, or this stops. Chromosomes to
-evaluate are drawn anywhere on the map. What storing
-places and reading entries one by one is worth against gathering them is in `fitness`, what all of
-it together is worth in `ga_run`.
+evaluate are drawn anywhere on the map. What storing places and reading entries one by one is worth
+against gathering them is in `fitness`, what all of it together is worth in `ga_run`.
 """
 
 from collections.abc import Callable

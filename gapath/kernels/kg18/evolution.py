@@ -6,12 +6,12 @@ takes numba longer than an epoch.
 
 from collections.abc import Mapping
 from functools import partial
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.kernels.history import EPOCHS
+from gapath.kernels.history import EPOCHS, History
 from gapath.kernels.jit import JIT, kernel
 from gapath.kernels.kg18.bspline import Basis
 from gapath.kernels.kg18.evaluation import evaluate, workspace
@@ -43,15 +43,6 @@ SETTINGS = np.dtype(
     ]
 )
 """Settings of the genetic algorithm, as the kernel takes them: an array of one row."""
-
-
-class EvolutionResult(NamedTuple):
-    """History of an evolution of E epochs; epoch 1 is the initial population."""
-
-    epochs: NDArray[np.void]
-    """(E,) `EPOCHS`."""
-    chromosomes: NDArray[np.int32]
-    """(E, 2 k) the best individual."""
 
 
 class Evolve(Protocol):
@@ -242,7 +233,7 @@ def run_evolutions(
     rounding: NDArray[np.float64],
     streams: NDArray[np.uint64],
     evolve: Evolve,
-) -> list[EvolutionResult]:
+) -> list[History]:
     """Run the genetic algorithm once for each stream and cut each history to its epochs.
 
     Parameters
@@ -254,7 +245,7 @@ def run_evolutions(
 
     Returns
     -------
-    list of EvolutionResult
+    list of History
         The last row of each is the answer.
     """
     runs, most = len(streams), int(settings["max_epochs"][0])
@@ -264,7 +255,7 @@ def run_evolutions(
     given = table, ends, rule, settings, weights, rounding, streams
     evolve(*given, history, chromosomes, epochs)
     return [
-        EvolutionResult(history[run, :taken], chromosomes[run, :taken])
+        History(history[run, :taken], chromosomes[run, :taken])
         for run, taken in enumerate(epochs.tolist())
     ]
 

@@ -6,11 +6,10 @@ uses a line that is not free has the perimeter of the picture instead, and so ha
 are genes too, one that does not begin at the start or never reaches the end.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
+from gapath.kernels.history import History
 from gapath.kernels.jit import kernel
 from gapath.kernels.m22.graph import END, START
 from gapath.kernels.m22.operators import INDEX_BITS, choose_breeders, cross_and_mutate, select
@@ -45,18 +44,9 @@ EPOCHS = np.dtype([("best", np.int64), ("sum", np.int64)])
 """What happened in an epoch: fitness of the best individual and of all together, 1 / SCALE."""
 
 
-class EvolutionResult(NamedTuple):
-    """History of an evolution of E epochs."""
-
-    epochs: NDArray[np.void]
-    """(E,) `EPOCHS`."""
-    chromosomes: NDArray[np.int32]
-    """(E, genes) the best individual of each."""
-
-
 def run_evolution(
     lengths: NDArray[np.int64], genes: int, settings: NDArray[np.void], stream: Stream
-) -> EvolutionResult:
+) -> History:
     """Run the genetic algorithm and cut its history to the epochs that it took.
 
     Parameters
@@ -68,14 +58,14 @@ def run_evolution(
 
     Returns
     -------
-    EvolutionResult
+    History
         Its last row is the answer.
     """
     most = int(settings["max_epochs"][0])
     history = np.empty(most, dtype=EPOCHS)
     chromosomes = np.empty((most, genes), dtype=np.int32)
     epochs = evolve(lengths, settings, stream, history, chromosomes)
-    return EvolutionResult(history[:epochs], chromosomes[:epochs])
+    return History(history[:epochs], chromosomes[:epochs])
 
 
 @kernel

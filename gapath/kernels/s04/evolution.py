@@ -1,11 +1,9 @@
 """The whole evolution of S04's genetic algorithm in one kernel (Sec. IV)."""
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.kernels.history import EPOCHS
+from gapath.kernels.history import EPOCHS, History
 from gapath.kernels.jit import kernel
 from gapath.kernels.lines import KEY_BITS, ONE_OBSTACLE, Ends
 from gapath.kernels.rng import Stream, fill
@@ -42,22 +40,13 @@ CERTAIN = np.uint64(1 << 32)
 """The threshold of what always happens."""
 
 
-class EvolutionResult(NamedTuple):
-    """History of an evolution of E epochs on a grid of n x n fields."""
-
-    epochs: NDArray[np.void]
-    """(E,) `EPOCHS`."""
-    chromosomes: NDArray[np.int32]
-    """(E, 2 n + 2) the fittest of each, as `flatten` writes it."""
-
-
 def run_evolution(
     table: NDArray[np.int32],
     ends: tuple[int, int, int, int],
     flips: tuple[bool, bool],
     settings: NDArray[np.void],
     stream: Stream,
-) -> EvolutionResult:
+) -> History:
     """Run the genetic algorithm and cut its history to the epochs that it took.
 
     Parameters
@@ -67,14 +56,14 @@ def run_evolution(
 
     Returns
     -------
-    EvolutionResult
+    History
         Its last row is the answer.
     """
     most = int(settings["max_epochs"][0])
     history = np.empty(most, dtype=EPOCHS)
     chromosomes = np.empty((most, 2 * max(table.shape) + 2), dtype=np.int32)
     epochs = evolve(table, ends, *flips, settings, stream, history, chromosomes)
-    return EvolutionResult(history[:epochs], chromosomes[:epochs])
+    return History(history[:epochs], chromosomes[:epochs])
 
 
 @kernel
