@@ -1,16 +1,18 @@
-"""The only import of numba: the `kernel` decorator, its cache folder, and what vectors need.
+"""The only import of numba: the `kernel` decorator, its cache, and what vectors need.
 
 numba's own cache does not notice that a function called from another file was edited,
 so the folder is keyed by a hash of every file that holds kernels: gapath's own, and those of the
-package that a function belongs to. Where no folder can be written, kernels are compiled anew in
-each process instead of failing at import.
+package that a function belongs to. Nor does it notice a damaged file, whose machine code would end
+the process: here each file begins with a hash of the rest, and one that does not fit counts as
+none. What cannot be written, to a full disk for example, is compiled anew in each process.
 """
 
 import hashlib
 import os
+import pickle
 import sys
-import tempfile
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from functools import cache, partial
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar, overload
@@ -18,6 +20,7 @@ from typing import Any, ParamSpec, TypeVar, overload
 import numba
 from numba import extending
 from numba import types as types
+from numba.core import caching
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -45,18 +48,105 @@ def cache_root() -> Path:
     return Path(user) / "gapath" / "kernels"
 
 
+def _package_of(function: Callable[..., Any]) -> str:
+    module = function.__globals__.get("__package__") or function.__module__  # python -m: __main__
+    return str(module.partition(".")[0])
+
+
 @cache
-def _cache_folder(package: str) -> str | None:
-    """Return the folder for a package's compiled kernels, or None where none can be written."""
+def _cache_folder(package: str) -> Path | None:
+    """Return the folder for a package's compiled kernels, or None where there can be none."""
     try:
         sources = [sorted(_package_sources(name)) for name in sorted({_OWN, package})]
         key = hashlib.sha256(b"\0".join(path.read_bytes() for part in sources for path in part))
-        folder = cache_root() / key.hexdigest()[:16]
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            return str(folder)
+        return cache_root() / key.hexdigest()[:16]
     except (OSError, RuntimeError):  # RuntimeError: no home directory
         return None
+
+
+class _Files(caching.IndexDataCacheFile):  # type: ignore[misc]
+    """A function's files: an index, signature -> name, and one with the code for each signature.
+
+    Each file is the SHA-256 of the rest and of numba's version, and the rest: a pickle. The one
+    with code says what signature it is for: an index that was lost is begun anew, and until its
+    first file is replaced that would be another's code.
+    """
+
+    def load(self, key: object) -> Any:
+        """Give what was saved for a key; None if there is nothing, or nothing whole."""
+        of, data = super().load(key) or (None, None)
+        return data if of == key else None
+
+    def save(self, key: object, data: object) -> None:
+        """Save it; raises OSError if it cannot be written."""
+        super().save(key, (key, data))
+
+    def _load_index(self) -> dict[Any, str]:
+        stamp, names = self._read(self._index_path) or (None, {})
+        return names if stamp == self._source_stamp else {}
+
+    def _save_index(self, names: dict[Any, str]) -> None:
+        self._write(self._index_path, (self._source_stamp, names))
+
+    def _load_data(self, name: str) -> Any:
+        return self._read(self._data_path(name))
+
+    def _save_data(self, name: str, data: object) -> None:
+        self._write(self._data_path(name), data)
+
+    def _read(self, path: str) -> Any:
+        try:
+            content = Path(path).read_bytes()
+        except OSError:
+            return None
+        seal, content = content[:_SEAL], content[_SEAL:]
+        return pickle.loads(content) if seal == self._seal(content) else None  # noqa: S301
+
+    def _write(self, path: str, data: object) -> None:
+        content = self._dump(data)
+        with self._open_for_write(path) as file:
+            file.write(self._seal(content) + content)
+
+    def _seal(self, content: bytes) -> bytes:
+        return hashlib.sha256(numba.__version__.encode() + content).digest()
+
+
+_SEAL = hashlib.sha256().digest_size
+
+
+class _Place(caching.UserProvidedCacheLocator):  # type: ignore[misc]
+    """Where a function's files are: a folder that is made when something is saved."""
+
+    def __init__(self, function: Callable[..., Any], file: str) -> None:
+        super().__init__(function, file)
+        folder = _cache_folder(_package_of(function))
+        self._cache_path = str(folder / self.get_suitable_cache_subpath(file)) if folder else ""
+
+    @classmethod
+    def from_function(cls, function: Callable[..., Any], file: str) -> "_Place | None":
+        """Give the place; None if there can be none, or if the function is in no file."""
+        place = cls(function, file)
+        return place if place.get_cache_path() and Path(file).exists() else None
+
+
+class _Results(caching.CompileResultCacheImpl):  # type: ignore[misc]
+    _locator_classes = (_Place,)  # and none of numba's, beside sources and whatever they call
+
+
+class _Cache(caching.FunctionCache):  # type: ignore[misc]
+    """A function's cache, of checked files; raises RuntimeError if there is no place for it."""
+
+    _impl_class = _Results
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        super().__init__(function)
+        stamp = self._impl.locator.get_source_stamp()
+        self._cache_file = _Files(self.cache_path, self._impl.filename_base, stamp)
+
+    def save_overload(self, signature: object, result: object) -> None:
+        """Save what was compiled, if that can be: it is there to be used anyway."""
+        with suppress(OSError):
+            super().save_overload(signature, result)
 
 
 JIT: bool = not numba.config.DISABLE_JIT  # type: ignore[attr-defined]
@@ -93,17 +183,11 @@ def kernel(function: Callable[..., Any] | None = None, /, *, inner: bool = False
     if function is None:
         return partial(kernel, inner=inner)
     options = _OPTIONS | {"no_cpython_wrapper": inner}
-    module = function.__globals__.get("__package__") or function.__module__  # python -m: __main__
-    folder = _cache_folder(module.partition(".")[0])
-    if folder is None:
-        return numba.njit(function, **options)
-    # numba reads CACHE_DIR while it decorates; other people's kernels keep their own.
-    before = numba.config.CACHE_DIR  # type: ignore[attr-defined]
-    numba.config.CACHE_DIR = folder  # type: ignore[attr-defined]
-    try:
-        return numba.njit(function, cache=True, **options)
-    finally:
-        numba.config.CACHE_DIR = before  # type: ignore[attr-defined]
+    compiled = numba.njit(function, **options)
+    if JIT:
+        with suppress(RuntimeError):
+            compiled._cache = _Cache(function)
+    return compiled
 
 
 def intrinsic(function: Callable[..., Any]) -> Callable[..., Any]:
