@@ -233,11 +233,11 @@ def test_the_parts_of_a_sweep_add_up(monkeypatch):
 
 
 def test_logged_trials_have_the_epochs_asked_for(tmp_path):
-    batch = logging.Batch("kg18_test3", 8, 12, str(tmp_path))
-    assert {trial.plan.epochs for trial in batch.trials} <= set(range(8, 13))
-    assert batch.log() > 0
-    assert all("evolution" not in vars(trial.plan) for trial in batch.trials)
-    batch.recorder.close()
+    log = logging.TrialLog("kg18_test3", 8, 12, str(tmp_path))
+    assert {trial.plan.epochs for trial in log.trials} <= set(range(8, 13))
+    assert log.time() > 0
+    assert all("evolution" not in vars(trial.plan) for trial in log.trials)
+    log.recorder.close()
     assert (tmp_path / "run.mcap").stat().st_size > 0
 
 
