@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from gapath import components, discovery
-from gapath.discovery import kinds, yaml_names, yaml_values
+from gapath.discovery import kinds, readers, yaml_names, yaml_values
 from gapath.errors import InputError
 from gapath.events import Finished, Recorder, RunFinished, TrialStarted
 from gapath.grid import GridMap
@@ -217,6 +217,35 @@ def test_map_readers_read_or_say_what_is_missing(name):
         grid = components.build("map", values, "map").read()
         assert isinstance(grid, GridMap)
         Problem(grid, grid.start, grid.target)
+
+
+NO_MAPS = [
+    b"",
+    b"hello",
+    b"\0\xff\xfe\xfd",
+    b"{}",
+    b"[" * 50_000,
+    b"<sdf/>",
+    b"999999999\n",
+    b"type octile\nheight 3\nwidth 999999999\nmap\n...",
+    b"P5 999999999 999999999 255\n\0",
+    b"image: ../../x\n",
+    bytes(range(256)) * 40,
+]
+
+
+@pytest.mark.parametrize("content", NO_MAPS, ids=lambda content: str(content[:12]))
+@pytest.mark.parametrize("suffix", sorted(readers()))
+def test_map_readers_turn_what_is_no_map_into_one_error(suffix, content, tmp_path):
+    path = tmp_path / f"map{suffix}"
+    path.write_bytes(content)
+    for where in (path, tmp_path, tmp_path / f"none{suffix}"):
+        values = yaml_values("map", readers()[suffix]) | {"path": str(where)}
+        with pytest.raises(InputError) as caught:
+            components.build("map", values, "map").read()
+        message = str(caught.value)
+        assert message.startswith(str(where)) and "expected" in message
+        assert "\n" not in message and len(message) < 500
 
 
 @pytest.mark.parametrize("name", kinds("task"))

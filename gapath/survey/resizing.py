@@ -1,10 +1,12 @@
-"""Automatic resizing of a picture without losing information (M22 Sec. IV, further work).
+"""Automatic resizing of a picture (M22 Sec. IV, further work).
 
 A picture is made smaller by a whole number: a pixel of the small one is an obstacle if any of
 its pixels was, so no obstacle vanishes. What may be lost are gaps. The scale is the coarsest one
 at which none is that the robot fits through, up to that at which its radius is one pixel: grown
 obstacles neither merge with one another or with the border, nor cut the free floor in two, where
-they did not before.
+they did not before. Obstacles grow by less than two small pixels more than they had to, and a
+free line between two points may be blocked by that: paths may be longer, and planners that know
+a few keypoints only may find none.
 """
 
 import numpy as np
@@ -44,7 +46,7 @@ def growth_at(scale: int, growth: int) -> int:
 def coarsest_scale(
     obstacles: Picture, grown: Picture, growth: int, ends: tuple[Field, Field]
 ) -> int:
-    """Find the coarsest scale at which nothing is lost.
+    """Find the coarsest scale at which no obstacle vanishes and no gap closes.
 
     Parameters
     ----------

@@ -182,7 +182,7 @@ class Surveyor(Clearance):
     push_out : bool
         Move keypoints that lie within a grown obstacle outwards.
     resize : bool
-        Work on the smallest picture that loses nothing.
+        Work on the smallest picture that closes no gap; paths may be longer.
     """
 
     keypoints: str

@@ -251,7 +251,7 @@ def _stages(medians: pd.DataFrame) -> Table:
     return Table(
         "m22_stages",
         "Where the time goes: median of each stage over all trials. Resizing is the search for the "
-        "coarsest scale that loses nothing; planning, of what is not the paper's, the whole search "
+        "coarsest scale that closes no gap; planning, of what is not the paper's, the whole search "
         "on the pixel grid.",
         medians,
         pd.DataFrame(shown),

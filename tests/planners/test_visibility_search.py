@@ -60,6 +60,32 @@ def test_exact_planners_agree_on_every_scene(scene):
 
 
 @pytest.mark.parametrize("scene", SCENES)
+def test_on_resized_scenes_the_shortest_path_over_corners_is_hardly_longer(scene):
+    grid = load_map(scene)
+    full, small = (
+        polyline_length(gapath.plan(grid, planner="visibility_dijkstra_corners", resize=r).lines())
+        for r in (False, True)
+    )
+    assert full <= small < 1.01 * full
+
+
+def test_where_discs_stand_closely_a_resized_path_may_be_much_longer():
+    """What the pages say: resizing closes no gap, but it is not free."""
+    y, x = np.ogrid[:120, :160]
+    discs = ((96, 78, 15), (129, 96, 9), (72, 32, 13), (130, 44, 10), (61, 84, 17), (32, 30, 17))
+    blocked = np.any([(x - a) ** 2 + (y - b) ** 2 <= r**2 for a, b, r in discs], axis=0)
+    grid = GridMap("discs", np.where(blocked, 1.0, 0.5))
+    full, small = (
+        gapath.plan(
+            grid, (2, 60), (157, 60), "visibility_dijkstra_corners", resize=r, robot_radius=4
+        )
+        for r in (False, True)
+    )
+    assert small.survey().block == 3
+    assert 1.5 < polyline_length(small.lines()) / polyline_length(full.lines()) < 1.6
+
+
+@pytest.mark.parametrize("scene", SCENES)
 def test_resized_scenes_have_valid_paths_nearly_as_short(scene):
     grid = load_map(scene)
     problem = Problem(grid, grid.start, grid.target)

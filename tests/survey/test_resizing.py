@@ -42,7 +42,7 @@ def obstacles_with_border(picture):
     return ndimage.label(np.pad(picture, 1, constant_values=True), np.ones((3, 3)))[1]
 
 
-def loses_nothing(picture, growth, scale, ends):
+def closes_no_gap(picture, growth, scale, ends):
     """No end is lost, no two obstacles merge, no part of the floor is cut in two."""
     fine = twin.dilated(picture, growth)
     coarse = twin.dilated(shrunk(picture, scale), growth_at(scale, growth))
@@ -74,10 +74,10 @@ def pictures_with_ends(draw):
 
 @settings(max_examples=150)
 @given(pictures_with_ends())
-def test_the_scale_is_the_coarsest_that_loses_nothing(case):
+def test_the_scale_is_the_coarsest_that_closes_no_gap(case):
     picture, growth, ends = case
     scale = coarsest_scale(picture, dilate(picture, growth), growth, ends)
-    good = [s for s in range(2, growth + 1) if loses_nothing(picture, growth, s, ends)]
+    good = [s for s in range(2, growth + 1) if closes_no_gap(picture, growth, s, ends)]
     assert scale == max(good, default=1)
     assert type(scale) is int
 
@@ -131,7 +131,7 @@ def test_floors_that_touch_at_a_corner_are_two():
     ends = (3, 20), (50, 20)
     assert parts_of_floor(dilate(picture, 4))[1] == 2
     scale = coarsest_scale(picture, dilate(picture, 4), 4, ends)
-    assert scale == max(s for s in range(2, 5) if loses_nothing(picture, 4, s, ends)) > 1
+    assert scale == max(s for s in range(2, 5) if closes_no_gap(picture, 4, s, ends)) > 1
 
 
 def test_where_nothing_works_it_stays_as_it_is():

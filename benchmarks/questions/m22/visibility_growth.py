@@ -3,7 +3,7 @@
 Scene 1 of the class of the experiments, the robot's radius growing with the picture (5 pixels at
 800 x 600); times in ms, "a generation" in us. Stages are those of a plan; the genetic algorithm's
 has the check that a path exists.
-"resize": the same with ``resize: true``, which works on the smallest picture that loses nothing.
+"resize": the same with ``resize: true``, which works on the smallest picture that closes no gap.
 "search" is the search for that picture, "scale" how many pixels a side become one; "whole /
 resized" above 1 says that it saved time, "without search" that it would, were the scale known.
 """
