@@ -226,7 +226,7 @@ def check_gapath(words):
                 components.build("recorder", values, f"recorder.{name}")
             components.build("map", root.map, "map")
             if "path" in root.map:
-                config.read_problem(root)
+                config.read_problem(root, {})
 
 
 def check_genotype(words):
