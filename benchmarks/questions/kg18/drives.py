@@ -111,7 +111,7 @@ def time_drives(map_name: str, trials: int) -> list[Row]:
     rows: list[Row] = []
     for name in NAVIGATORS:
         driven = [found[name] for found in results]
-        reached = sum(d.execution is Outcome.REACHED for d in driven)
+        reached = sum(d.outcome is Outcome.REACHED for d in driven)
         row: Row = {"map": map_name, "navigator": name, "drives": trials, "reached": reached}
         row["steps"] = quartiles([len(d.frames) - 1 for d in driven])
         row["drive ms"] = quartiles([1e3 * d.compute_time_s for d in driven])
