@@ -1,6 +1,7 @@
 """A YAML's ``kind`` and settings become an object."""
 
 import dataclasses
+import math
 from collections.abc import Callable
 from typing import Any, cast, get_args, get_origin, get_type_hints
 
@@ -203,13 +204,21 @@ def checked(target: type[Any], values: object, where: str) -> dict[str, Any]:
 
 
 def _whole(hint: Any, value: Any) -> Any:
-    """Give a whole number the type that a field has, if that is an int or a float, not both."""
+    """Give a whole number the type that a field has, an int or a float, also in quotes.
+
+    OmegaConf does so for text where a field is a number only, not where it may be a word.
+    """
     allowed = get_args(hint) or (hint,)
     if isinstance(value, list):
         items = next(
             (get_args(kind)[0] for kind in (hint, *allowed) if get_origin(kind) is list), None
         )
         return [_whole(items, item) for item in value]
+    if isinstance(value, str) and str in allowed and {int, float} & {*allowed}:
+        try:
+            value = float(value) if math.isfinite(float(value)) else value
+        except ValueError:
+            return value
     if float not in allowed and int in allowed and isinstance(value, float):
         return int(value) if value.is_integer() and abs(value) < EXACT else value
     if int not in allowed and float in allowed and type(value) is int and abs(value) < EXACT:

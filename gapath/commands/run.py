@@ -148,9 +148,14 @@ def complain(error: Exception) -> int:
             "output", error.filename, f"a folder that can be written ({error.strerror})"
         )
     if isinstance(error, OverrideParseException):
-        name, _, value = str(error.override).partition("=")
+        name, equals, value = str(error.override).partition("=")
         quoted = shlex.quote(f'{name}="{value}"')
-        error = InputError(name, value, f"quotes around what is no plain word, {quoted}")
+        right = f"quotes around what is no plain word, {quoted}"
+        if value[:1] in ("[", "{", "(", '"', "'"):
+            right = "a whole list [x, y], mapping {name: value} or quoted text"
+        error = (
+            InputError(name, value, right) if equals else InputError(name, "no value", "NAME=VALUE")
+        )
     if isinstance(error.__cause__, ConfigKeyError | ConfigAttributeError):
         key = str(error.__cause__.full_key)
         group, _, name = key.partition(".")

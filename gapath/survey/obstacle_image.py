@@ -47,7 +47,7 @@ class Clearance:
     radius_unit: str
     radius_tolerance: float
     element: str
-    threshold: str | float | int
+    threshold: str | float
 
     def __post_init__(self) -> None:
         check = Checks(self, "planner")

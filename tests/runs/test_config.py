@@ -24,6 +24,8 @@ def run_of(*overrides):
         (["map=image", "map.path=m.png", "map.start=[0,0]", "map.target=[1,1]"],
          ["map=image", "map.path=m.png", 'map.start=["0",0.0]', "map.target=[1,'1']"]),
         (["map.instance=3"], ["map.instance='3'"]),
+        (["planner=visibility_ga", "planner.genes=4", "planner.threshold=1"],
+         ["planner=visibility_ga", "planner.genes='4'", "planner.threshold='1.0'"]),
         (["planner.population=120", "seed=7"], ["planner.population='120'", "seed=7.0"]),
         (["planner.vln=1000"], ["planner.vln=1000.0"]),
         (["planner=ga3"], ["planner.population=100.0", "planner.control_points='5'"]),
@@ -44,7 +46,7 @@ def test_one_value_has_one_key(first, second, tmp_path, monkeypatch):
     one, other = run_of(*first), run_of(*second)
     assert text_of(one.settings) == text_of(other.settings)
     assert one.method == other.method
-    keys = {run_key(run.settings, run.problem, run.inputs) for run in (one, other)}
+    keys = {run_key(run.settings, run.problem, {}) for run in (one, other)}
     assert len(keys) == 1
 
 
