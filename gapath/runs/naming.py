@@ -69,7 +69,8 @@ def method_of(
         elif group in plain:
             usual |= flatten(plain[group], group)
         else:
-            usual |= {key: value for key, value in flat.items() if not _within(key, overridden)}
+            changed = [name for name in overridden if name != group]  # that chose the YAML
+            usual |= {key: value for key, value in flat.items() if not _within(key, changed)}
     if given.get("drive.known_map"):
         given["drive.known_map"] = _title(str(given["drive.known_map"]))
     return Method(str(choices[task.groups[0]]), _changes(given, usual))

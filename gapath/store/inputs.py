@@ -24,6 +24,9 @@ Inputs: TypeAlias = Mapping[str, str]
 
 _SYSTEM = ("/proc", "/sys", "/dev", "/etc", "/run")
 
+_LIBRARIES = {"site-packages", "dist-packages"}
+"""Folders of installed packages: of this environment, of the user, of whatever a .pth adds."""
+
 _opened: list[list[str]] = []
 """The paths that were opened for reading, for each `watched` that is under way."""
 
@@ -79,13 +82,15 @@ def _is_input(file: Path) -> bool:
         return False
     if file.is_relative_to(_folder("gapath.maps")):  # which lies among the libraries, or not
         return True
+    if not _LIBRARIES.isdisjoint(file.parts):
+        return False
     return not any(file.is_relative_to(place) for place in _no_inputs())
 
 
 @lru_cache
 def _no_inputs() -> list[Path]:
     library = sysconfig.get_paths()
-    places = [library[name] for name in ("stdlib", "platstdlib", "purelib", "platlib")]
+    places = [library[name] for name in ("stdlib", "platstdlib")]
     places += [str(Path(os.__file__).parent), *_SYSTEM]  # the first: a virtual environment's base
     own = [_folder(package) for package in ("gapath", "gapath.pipelines", *conf_packages())]
     own += other_folders().values()
