@@ -44,5 +44,5 @@ class Planner:
         return self.minimise
 
     def plan(self, problem: Query, stream: Stream) -> Plan:
-        """Find a path of least cost, of several one of the fewest fields; the stream is not used."""
+        """Find a cheapest path, of several one of the fewest fields; the stream is not used."""
         return shortest_path(problem, self.informed, by_length=self.minimise == "length")
