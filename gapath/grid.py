@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import InputError, require
-from gapath.kernels.table import fill_table
+from gapath.kernels.table import fill_parts, fill_table
+from gapath.kernels.units import ALLOW
 
 Field: TypeAlias = tuple[int, int]
 """A field of the map as (x, y)."""
@@ -187,6 +188,38 @@ class GridMap:
         """Give the least table entry of any field but start and target (0 if none is left)."""
         ends = (start[1] * self.cols + start[0], target[1] * self.cols + target[0])
         return next((entry for entry, i in self._lightest if i not in ends), 0)
+
+    def joined(self, start: Field, target: Field, rule: int) -> bool:
+        """Tell whether a path joins two free fields; what that takes is done once a map.
+
+        Parameters
+        ----------
+        start, target : (x, y)
+            Free fields.
+        rule : int
+            Corner-cutting rule (`gapath.kernels.units`).
+
+        Returns
+        -------
+        bool
+            True if there is a path.
+        """
+        parts = self._parts_by_corners if rule == ALLOW else self._parts_by_sides
+        return bool(parts[start[1], start[0]] == parts[target[1], target[0]])
+
+    @cached_property
+    def _parts_by_corners(self) -> NDArray[np.int32]:
+        return self._parts(diagonal=True)
+
+    @cached_property
+    def _parts_by_sides(self) -> NDArray[np.int32]:
+        """Of all other rules: where they let a diagonal step pass there is a way beside it."""
+        return self._parts(diagonal=False)
+
+    def _parts(self, diagonal: bool) -> NDArray[np.int32]:
+        parts = np.zeros(self.weights.shape, dtype=np.int32)
+        fill_parts(self.table, diagonal, parts)
+        return parts
 
     @cached_property
     def digest(self) -> str:

@@ -86,16 +86,14 @@ class Problem:
 
     def __post_init__(self) -> None:
         for name in ("start", "target"):
-            place = getattr(self, name)
-            require(_is_pair(place), f"map.{name}", place, "two integers [x, y]")
-            place = (int(place[0]), int(place[1]))
+            given = getattr(self, name)
+            place = _pair(given)
+            if place is None:
+                raise InputError(f"map.{name}", given, "two integers [x, y]")
             object.__setattr__(self, name, place)
-            require(
-                self.map.contains(place),
-                f"map.{name}",
-                list(place),
-                f"a field [x, y] with 0 <= x < {self.map.cols}, 0 <= y < {self.map.rows}",
-            )
+            if not self.map.contains(place):
+                limits = f"0 <= x < {self.map.cols}, 0 <= y < {self.map.rows}"
+                raise InputError(f"map.{name}", list(place), f"a field [x, y] with {limits}")
             if self.map.obstacles[place[1], place[0]]:
                 nearest = nearest_free(self.map.obstacles, place)
                 hint = f"; the nearest is {list(nearest)}" if nearest else ", but there is none"
@@ -106,12 +104,13 @@ class Problem:
                 )
 
 
-def _is_pair(place: Any) -> bool:
+def _pair(place: Any) -> Field | None:
     try:
         x, y = place
-        return float(x).is_integer() and float(y).is_integer()
+        pair = int(x), int(y)
+        return pair if pair == (float(x), float(y)) else None
     except (TypeError, ValueError, OverflowError):
-        return False
+        return None
 
 
 class Evolution(NamedTuple):
