@@ -157,6 +157,10 @@ def no_path() -> NDArray[np.int32]:
     return np.empty((0, 2), dtype=np.int32)
 
 
+def nothing() -> None:
+    """Tell nothing: what a plan says of what its planner does not have."""
+
+
 @dataclass(frozen=True, eq=False)
 class Answer:
     """What a planning query came to, as rows, events and logs have it.
@@ -216,26 +220,28 @@ class Plan(Answer):
     ----------
     status, path, weights, obstacles, vln, epochs, evaluations, expansions
         As of `Answer`.
-    trace : callable, optional
-        Computes the history of a genetic algorithm; called only if somebody wants it.
-    lines : callable, optional
-        Gives the way points (n, 2) that straight lines join, if the path is made of such lines;
-        one found on a smaller picture may not be.
-    survey : callable, optional
-        Gives what the planner made of the map before it searched; the same for every stream.
+    trace : callable
+        Computes the history of a genetic algorithm, None for other planners; called only if
+        somebody wants it.
+    lines : callable
+        Gives the way points (n, 2) that straight lines join, from start to target; none where the
+        path is not made of such lines, as A*'s, one found on a smaller picture, or no path.
+    survey : callable
+        Gives what the planner made of the map before it searched, the same for every stream; None
+        if it made nothing.
     stages : mapping of str to float
         Wall time of each stage in seconds, for a planner that has stages.
     """
 
-    trace: Callable[[], Evolution] | None = field(default=None, repr=False)
-    lines: Callable[[], NDArray[np.int32]] | None = field(default=None, repr=False)
-    survey: Callable[[], Graph] | None = field(default=None, repr=False)
+    trace: Callable[[], Evolution | None] = field(default=nothing, repr=False)
+    lines: Callable[[], NDArray[np.int32]] = field(default=no_path, repr=False)
+    survey: Callable[[], Graph | None] = field(default=nothing, repr=False)
     stages: Mapping[str, float] = field(default_factory=dict, repr=False)
 
     @cached_property
     def evolution(self) -> Evolution | None:
         """The history of a genetic algorithm, epoch by epoch; None for other planners."""
-        return self.trace() if self.trace else None
+        return self.trace()
 
     def _repr_html_(self) -> str:
         rows: dict[str, object] = {"status": f"{self.status.name.lower()}: {self.status.sentence}"}
