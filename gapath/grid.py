@@ -229,7 +229,8 @@ class GridMap:
 
     def contains(self, place: Field) -> bool:
         """Tell whether a field (x, y) lies on the map."""
-        return 0 <= place[0] < self.cols and 0 <= place[1] < self.rows
+        rows, cols = self.weights.shape
+        return bool(0 <= place[0] < cols and 0 <= place[1] < rows)
 
     def to_metres(self, fields: NDArray[np.int32]) -> NDArray[np.float64]:
         """Give the centres of fields in the map's metric frame, which has y up.

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, Protocol, Self, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.errors import InputError, require
+from gapath.errors import InputError
 from gapath.grid import Field, GridMap, PlanningMap, nearest_free, other_reading
 from gapath.kernels import units
 from gapath.kernels.rng import Stream
@@ -35,9 +35,16 @@ class CornerCutting(IntEnum):
     @classmethod
     def named(cls, name: str) -> Self:
         """Give the rule that a setting names, in lower case; raises InputError if it names none."""
-        rules = [rule.name.lower() for rule in cls]
-        require(name in rules, "corner_cutting", name, f"one of {', '.join(rules)}")
-        return cls[name.upper()]
+        for rule in cls:
+            if rule.setting == name:
+                return rule
+        rules = ", ".join(rule.setting for rule in cls)
+        raise InputError("corner_cutting", name, f"one of {rules}")
+
+    @cached_property
+    def setting(self) -> str:
+        """Its name in settings."""
+        return self.name.lower()
 
 
 class PlanStatus(IntEnum):
