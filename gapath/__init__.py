@@ -48,7 +48,8 @@ def __getattr__(name: str) -> object:
         return version("gapath")
     if name not in _HOMES:
         raise AttributeError(f"module 'gapath' has no attribute {name!r}")
-    return getattr(import_module(f"gapath.{_HOMES[name]}"), name)
+    globals()[name] = found = getattr(import_module(f"gapath.{_HOMES[name]}"), name)
+    return found
 
 
 def __dir__() -> list[str]:

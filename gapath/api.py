@@ -1,12 +1,14 @@
 """The library's three lines: load a map, plan on it, look at the plan."""
 
+from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from gapath.components import build
 from gapath.discovery import reader_of, yaml_values
 from gapath.errors import InputError, require
 from gapath.grid import Field, GridMap
+from gapath.planning.acceleration import AUTO, with_kernels
 from gapath.planning.simulation import plan_once
 from gapath.problem import CornerCutting, Particular, Plan, Planner, Problem
 
@@ -48,9 +50,14 @@ def plan(
     planner: str | Planner = "ga3",
     seed: int = 0,
     corner_cutting: str = "allow",
+    kernels: str = AUTO,
     **settings: Any,
 ) -> Plan:
     """Plan a path.
+
+    Many calls cost little more than their plans: a named planner is made once for its settings,
+    and kept; a YAML is read once a process. So is what a map needs besides its weights: make a
+    `GridMap` of an array once, not for each call.
 
     Parameters
     ----------
@@ -59,11 +66,13 @@ def plan(
     start, target : (x, y), optional
         Fields; by default those that the map's author meant.
     planner : str or Planner
-        A name in ``conf/planner``, or a planner.
+        A name in ``conf/planner``, or a planner (`gapath.problem.Planner`).
     seed : int
         Key of the random stream: the same seed gives the same plan.
     corner_cutting : str
         "allow", "one_side", "forbid" or "no_diagonals".
+    kernels : str
+        "auto", or a name that the planner knows, such as "scalar"; they change no plan.
     **settings
         Settings that replace those in ``conf/planner``, for example ``population=200``.
 
@@ -75,8 +84,8 @@ def plan(
     Raises
     ------
     InputError
-        If start or target cannot be used, a setting is unknown or out of range, or the planner
-        does not take such a map.
+        If the map is none, start or target cannot be used, a setting is unknown or out of range, or
+        the planner does not take such a map.
 
     Examples
     --------
@@ -85,6 +94,7 @@ def plan(
     >>> gapath.plan(grid, planner="astar").cost
     48.5
     """
+    require(isinstance(map, GridMap), "map", type(map).__name__, "a gapath.GridMap")
     rule = CornerCutting.named(corner_cutting)
     start = map.start if start is None else start
     target = map.target if target is None else target
@@ -92,12 +102,39 @@ def plan(
         missing = "map.start" if start is None else "map.target"
         raise InputError(missing, None, "a field (x, y)")
     if isinstance(planner, str):
-        values = yaml_values("planner", planner) | settings
-        chosen: Planner = build("planner", values, "planner")
+        chosen = _named(planner, kernels, settings)
     else:
+        require(_plans(type(planner)), "planner", planner, "a name in conf/planner, or a planner")
         require(not settings, "settings", [*settings], "none: the planner is given ready made")
-        chosen = planner
+        chosen = with_kernels(planner, kernels)
     problem = Problem(map, start, target, rule)
-    if isinstance(chosen, Particular):
-        chosen.check(problem)
+    if _is_particular(type(chosen)):
+        cast(Particular, chosen).check(problem)
     return plan_once(problem, chosen, seed)
+
+
+def _named(name: str, kernels: str, settings: dict[str, Any]) -> Planner:
+    """Make a planner of a YAML, or give the one that was made of the same settings."""
+    key = (name, kernels, repr(sorted(settings.items())) if settings else "")
+    planner = _made.get(key)
+    if planner is None:
+        made: Planner = build("planner", yaml_values("planner", name) | settings, "planner")
+        planner = with_kernels(made, kernels)
+        if len(_made) >= _MOST_MADE:
+            _made.clear()
+        _made[key] = planner
+    return planner
+
+
+_made: dict[tuple[str, str, str], Planner] = {}
+_MOST_MADE = 64
+
+
+@lru_cache
+def _plans(kind: type) -> bool:
+    return all(hasattr(kind, name) for name in ("exact", "minimises", "plan"))
+
+
+@lru_cache
+def _is_particular(kind: type) -> bool:
+    return issubclass(kind, Particular)

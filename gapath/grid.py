@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import InputError, require
-from gapath.kernels.table import fill_table
+from gapath.kernels.table import fill_parts, fill_table
+from gapath.kernels.units import ALLOW
 
 Field: TypeAlias = tuple[int, int]
 """A field of the map as (x, y)."""
@@ -188,6 +189,38 @@ class GridMap:
         ends = (start[1] * self.cols + start[0], target[1] * self.cols + target[0])
         return next((entry for entry, i in self._lightest if i not in ends), 0)
 
+    def joined(self, start: Field, target: Field, rule: int) -> bool:
+        """Tell whether a path joins two free fields; what that takes is done once a map.
+
+        Parameters
+        ----------
+        start, target : (x, y)
+            Free fields.
+        rule : int
+            Corner-cutting rule (`gapath.kernels.units`).
+
+        Returns
+        -------
+        bool
+            True if there is a path.
+        """
+        parts = self._parts_by_corners if rule == ALLOW else self._parts_by_sides
+        return bool(parts[start[1], start[0]] == parts[target[1], target[0]])
+
+    @cached_property
+    def _parts_by_corners(self) -> NDArray[np.int32]:
+        return self._parts(diagonal=True)
+
+    @cached_property
+    def _parts_by_sides(self) -> NDArray[np.int32]:
+        """Of all other rules: where they let a diagonal step pass there is a way beside it."""
+        return self._parts(diagonal=False)
+
+    def _parts(self, diagonal: bool) -> NDArray[np.int32]:
+        parts = np.zeros(self.weights.shape, dtype=np.int32)
+        fill_parts(self.table, diagonal, parts)
+        return parts
+
     @cached_property
     def digest(self) -> str:
         """SHA-256 of what a planner and a log see of the map: weights, shape, scale and place."""
@@ -196,7 +229,8 @@ class GridMap:
 
     def contains(self, place: Field) -> bool:
         """Tell whether a field (x, y) lies on the map."""
-        return 0 <= place[0] < self.cols and 0 <= place[1] < self.rows
+        rows, cols = self.weights.shape
+        return bool(0 <= place[0] < cols and 0 <= place[1] < rows)
 
     def to_metres(self, fields: NDArray[np.int32]) -> NDArray[np.float64]:
         """Give the centres of fields in the map's metric frame, which has y up.

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, Protocol, Self, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.errors import InputError, require
+from gapath.errors import InputError
 from gapath.grid import Field, GridMap, PlanningMap, nearest_free, other_reading
 from gapath.kernels import units
 from gapath.kernels.rng import Stream
@@ -35,9 +35,16 @@ class CornerCutting(IntEnum):
     @classmethod
     def named(cls, name: str) -> Self:
         """Give the rule that a setting names, in lower case; raises InputError if it names none."""
-        rules = [rule.name.lower() for rule in cls]
-        require(name in rules, "corner_cutting", name, f"one of {', '.join(rules)}")
-        return cls[name.upper()]
+        for rule in cls:
+            if rule.setting == name:
+                return rule
+        rules = ", ".join(rule.setting for rule in cls)
+        raise InputError("corner_cutting", name, f"one of {rules}")
+
+    @cached_property
+    def setting(self) -> str:
+        """Its name in settings."""
+        return self.name.lower()
 
 
 class PlanStatus(IntEnum):
@@ -86,16 +93,14 @@ class Problem:
 
     def __post_init__(self) -> None:
         for name in ("start", "target"):
-            place = getattr(self, name)
-            require(_is_pair(place), f"map.{name}", place, "two integers [x, y]")
-            place = (int(place[0]), int(place[1]))
+            given = getattr(self, name)
+            place = _pair(given)
+            if place is None:
+                raise InputError(f"map.{name}", given, "two integers [x, y]")
             object.__setattr__(self, name, place)
-            require(
-                self.map.contains(place),
-                f"map.{name}",
-                list(place),
-                f"a field [x, y] with 0 <= x < {self.map.cols}, 0 <= y < {self.map.rows}",
-            )
+            if not self.map.contains(place):
+                limits = f"0 <= x < {self.map.cols}, 0 <= y < {self.map.rows}"
+                raise InputError(f"map.{name}", list(place), f"a field [x, y] with {limits}")
             if self.map.obstacles[place[1], place[0]]:
                 nearest = nearest_free(self.map.obstacles, place)
                 hint = f"; the nearest is {list(nearest)}" if nearest else ", but there is none"
@@ -106,12 +111,13 @@ class Problem:
                 )
 
 
-def _is_pair(place: Any) -> bool:
+def _pair(place: Any) -> Field | None:
     try:
         x, y = place
-        return float(x).is_integer() and float(y).is_integer()
+        pair = int(x), int(y)
+        return pair if pair == (float(x), float(y)) else None
     except (TypeError, ValueError, OverflowError):
-        return False
+        return None
 
 
 class Evolution(NamedTuple):
@@ -156,6 +162,10 @@ class Graph(NamedTuple):
 def no_path() -> NDArray[np.int32]:
     """Give the path of no fields."""
     return np.empty((0, 2), dtype=np.int32)
+
+
+def nothing() -> None:
+    """Tell nothing: what a plan says of what its planner does not have."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,26 +227,28 @@ class Plan(Answer):
     ----------
     status, path, weights, obstacles, vln, epochs, evaluations, expansions
         As of `Answer`.
-    trace : callable, optional
-        Computes the history of a genetic algorithm; called only if somebody wants it.
-    lines : callable, optional
-        Gives the way points (n, 2) that straight lines join, if the path is made of such lines;
-        one found on a smaller picture may not be.
-    survey : callable, optional
-        Gives what the planner made of the map before it searched; the same for every stream.
+    trace : callable
+        Computes the history of a genetic algorithm, None for other planners; called only if
+        somebody wants it.
+    lines : callable
+        Gives the way points (n, 2) that straight lines join, from start to target; none where the
+        path is not made of such lines, as A*'s, one found on a smaller picture, or no path.
+    survey : callable
+        Gives what the planner made of the map before it searched, the same for every stream; None
+        if it made nothing.
     stages : mapping of str to float
         Wall time of each stage in seconds, for a planner that has stages.
     """
 
-    trace: Callable[[], Evolution] | None = field(default=None, repr=False)
-    lines: Callable[[], NDArray[np.int32]] | None = field(default=None, repr=False)
-    survey: Callable[[], Graph] | None = field(default=None, repr=False)
+    trace: Callable[[], Evolution | None] = field(default=nothing, repr=False)
+    lines: Callable[[], NDArray[np.int32]] = field(default=no_path, repr=False)
+    survey: Callable[[], Graph | None] = field(default=nothing, repr=False)
     stages: Mapping[str, float] = field(default_factory=dict, repr=False)
 
     @cached_property
     def evolution(self) -> Evolution | None:
         """The history of a genetic algorithm, epoch by epoch; None for other planners."""
-        return self.trace() if self.trace else None
+        return self.trace()
 
     def _repr_html_(self) -> str:
         rows: dict[str, object] = {"status": f"{self.status.name.lower()}: {self.status.sentence}"}

@@ -48,7 +48,7 @@ class Row:
     `map_digest` is the SHA-256 of what a planner sees of the map; `published_length` is the octile
     length that the map's author gives, `length_ratio` that of a path that was found over it, both
     NaN where there is none; `metrics` holds the columns
-    of `gapath.metrics` by name: NaN (0 for a count) where there is no path.
+    of `gapath.metrics` by name, all of them NaN where the trial has no solution.
     """
 
     experiment: str
@@ -117,36 +117,36 @@ def _length_ratio(plan: Plan, published: float) -> float:
 
 
 @lru_cache
-def metrics() -> dict[str, tuple[Measure, type]]:
-    """Find all metrics: name -> how to measure, and whether it is a float or an int."""
-    found: dict[str, tuple[Measure, type]] = {}
+def metrics() -> dict[str, Measure]:
+    """Find all metrics: name -> how to measure."""
+    found: dict[str, Measure] = {}
     for name in kinds("metric"):
         measure: Any = getattr(load("metric", name), "measure", None)
         require(callable(measure), f"metric {name}", "a module without it", "a function measure")
         kind: Any = get_type_hints(measure).get("return")
         require(kind in (float, int), f"metric {name}, result", kind, "float or int")
-        found[name] = measure, kind
+        found[name] = measure
     return found
 
 
 def measured(problem: Problem, plan: Plan) -> dict[str, float]:
-    """Measure a plan's path by all metrics.
+    """Measure a plan's path by all metrics, if it is a solution.
 
     Parameters
     ----------
     problem : Problem
         The problem that it solves.
     plan : Plan
-        The plan; it may have no path.
+        The plan; its status says whether it is one.
 
     Returns
     -------
     dict of str to float
-        Metric -> value; NaN, of a count 0, without a path.
+        Metric -> value, all of them NaN unless the plan is FOUND.
     """
-    if not len(plan.path):
-        return {name: 0 if kind is int else math.nan for name, (_, kind) in metrics().items()}
-    return {name: measure(problem, plan) for name, (measure, _) in metrics().items()}
+    if not plan.feasible:
+        return dict.fromkeys(metrics(), math.nan)
+    return {name: float(measure(problem, plan)) for name, measure in metrics().items()}
 
 
 def columns(row: type[Row]) -> dict[str, type]:
@@ -166,7 +166,7 @@ def columns(row: type[Row]) -> dict[str, type]:
     del own["metrics"]
     for name in metrics():
         require(name not in own, f"metric {name}", "a column of the rows", "another name")
-    return own | {name: kind for name, (_, kind) in metrics().items()}
+    return own | dict.fromkeys(metrics(), float)
 
 
 @dataclass(frozen=True, eq=False)

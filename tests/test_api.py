@@ -9,6 +9,10 @@ import numpy as np
 import pytest
 
 import gapath
+from gapath import api
+from gapath import grid as grids
+from gapath.components import build
+from gapath.discovery import yaml_values
 
 
 def test_three_lines(tmp_path):
@@ -48,9 +52,54 @@ def test_a_map_from_an_array():
     assert math.isinf(plan.cost)
 
 
+def test_a_planner_is_made_once_for_its_settings(monkeypatch):
+    grid, made = gapath.load_map("kg18_test1"), []
+    monkeypatch.setattr(api, "_made", {})
+    monkeypatch.setattr(api, "build", lambda *given: made.append(given) or build(*given))
+    for _ in range(3):
+        for settings in ({}, {"population": 40}, {"population": 40, "max_epochs": 7}):
+            gapath.plan(grid, planner="ga1", **settings)
+            gapath.plan(grid, planner="ga1", **dict(reversed(settings.items())))
+    assert len(made) == 3
+    gapath.plan(grid, planner="ga1", kernels="scalar")
+    gapath.plan(grid, planner="ga1", mutation_probability=1)
+    gapath.plan(grid, planner="ga1", mutation_probability=1.0)
+    assert len(made) == 6
+    with pytest.raises(gapath.InputError, match="population"):
+        gapath.plan(grid, planner="ga1", population=True)
+    for population in range(20, 20 + 2 * api._MOST_MADE):
+        gapath.plan(grid, planner="ga1", population=population, max_epochs=1)
+    assert len(api._made) <= api._MOST_MADE
+
+
+def test_what_hangs_together_is_found_out_once_a_map(monkeypatch):
+    grid, calls = gapath.load_map("kg18_test4"), []
+    fill = grids.fill_parts
+    monkeypatch.setattr(grids, "fill_parts", lambda *given: calls.append(given) or fill(*given))
+    for seed in range(5):
+        for rule in gapath.CornerCutting:
+            gapath.plan(grid, planner="ga1", seed=seed, corner_cutting=rule.name.lower())
+    assert len(calls) == 2  # with and without diagonal steps
+
+
+def test_a_planner_can_be_given_and_kernels_chosen():
+    grid = gapath.load_map("kg18_test3")
+    ready = build("planner", yaml_values("planner", "ga3"), "planner")
+    plans = [
+        gapath.plan(grid, planner=planner, seed=3, kernels=kernels)
+        for planner in ("ga3", ready)
+        for kernels in ("auto", "scalar")
+    ]
+    assert len({(plan.cost, plan.epochs, plan.path.tobytes()) for plan in plans}) == 1
+
+
 @pytest.mark.parametrize(
     ("values", "message"),
     [
+        ({"map": np.full((5, 5), 0.5)}, "map: got ndarray, expected a gapath.GridMap"),
+        ({"planner": 3}, "planner: got 3"),
+        ({"planner": gapath.GridMap}, "planner: got <class"),
+        ({"kernels": "cuda"}, "kernels: got cuda"),
         ({"planner": "ga9"}, "planner: got 'ga9', expected one of astar"),
         ({"corner_cutting": "maybe"}, "corner_cutting: got maybe"),
         ({"population": 2}, "planner.population: got 2"),
@@ -63,7 +112,7 @@ def test_a_map_from_an_array():
 def test_bad_arguments_are_refused(values, message):
     grid = gapath.GridMap("mine", np.full((5, 5), 0.5))
     with pytest.raises(gapath.InputError, match=message):
-        gapath.plan(grid, **{"start": (0, 0), "target": (4, 4), **values})
+        gapath.plan(**{"map": grid, "start": (0, 0), "target": (4, 4), **values})
 
 
 @pytest.mark.parametrize("name", ["nowhere", "notes.txt", "gone.map"])

@@ -117,6 +117,42 @@ def test_planners_give_the_same_plan_for_the_same_stream(name):
     assert in_company.path.tolist() == first.path.tolist()
 
 
+def told(plan):
+    """All that can be asked of a plan, by name: what is called needs no argument."""
+    names = [name for name in dir(plan) if not name.startswith("_")]
+    return {
+        name: value() if callable(value := getattr(plan, name)) else value
+        for name in [*names, "__repr__", "_repr_html_"]
+    }
+
+
+@pytest.mark.parametrize("name", PLANNERS)
+def test_whatever_is_asked_of_a_plan_it_tells(name):
+    planner, grid = make_planner(name), make_problem().map
+    weights = np.full((24, 24), 0.5)
+    weights[:, 12] = 1.0
+    problems = [
+        make_problem(),
+        Problem(grid, (4, 20), (4, 20)),
+        Problem(GridMap("halves", weights), (2, 2), (21, 21)),
+    ]
+    plans = [planner.plan(each, rng.stream(3, i)) for each in problems for i in range(2)]
+    assert not all(plan.feasible for plan in plans)
+    asked = [problem for problem in problems for _ in range(2)]
+    asked += [problems[2], problems[0]]
+    plans += [plan_once(problems[2], planner, 0), Plan(PlanStatus.NOT_FOUND)]
+    for problem, plan in zip(asked, plans, strict=True):
+        answers = told(plan)
+        lines = answers["lines"]
+        assert lines.dtype == np.int32 and lines.ndim == 2 and lines.shape[1] == 2
+        if len(lines):
+            assert plan.feasible
+            assert [tuple(lines[i]) for i in (0, -1)] == [problem.start, problem.target]
+        assert answers["trace"] is None or len(answers["trace"].best) == plan.epochs
+        assert answers["survey"] is None or len(answers["survey"].points) >= 2
+        assert plan.status.name.lower() in answers["_repr_html_"]
+
+
 @pytest.mark.parametrize("name", PLANNERS)
 def test_a_walled_in_target_is_infeasible(name):
     weights = np.full((12, 12), 0.5)
@@ -248,6 +284,25 @@ def test_map_readers_turn_what_is_no_map_into_one_error(suffix, content, tmp_pat
         assert "\n" not in message and len(message) < 500
 
 
+def make_task(task):
+    plain = yaml.safe_load((files("gapath.conf") / "config.yaml").read_text("utf-8"))
+    method = yaml_values(task.groups[0], MADE_WITH[task.groups[0]])
+    return task.make({group: plain.get(group, method) for group in task.groups})
+
+
+@pytest.mark.parametrize("name", kinds("task"))
+def test_trials_that_fail_have_no_metrics(name):
+    made = make_task(find_task(name))
+    weights = np.full((24, 24), 0.5)
+    weights[:, 12] = 1.0
+    problem = Problem(GridMap("halves", weights), (2, 2), (21, 21))
+    batch = Batch("contract", "any", problem, 3, 2)
+    for trial in made.trials(batch, made.optimum(problem)):
+        values = trial.row.values()
+        assert not trial.found
+        assert all(np.isnan(values[metric]) for metric in [*kinds("metric"), "length_ratio"])
+
+
 @pytest.mark.parametrize("name", kinds("task"))
 def test_tasks_say_what_they_are_and_tell_what_they_say(name):
     task = find_task(name)
@@ -256,10 +311,7 @@ def test_tasks_say_what_they_are_and_tell_what_they_say(name):
     check_events(task)
     assert columns(task.row)[task.groups[0]] is str
     assert columns(task.row)[task.success] is bool
-    plain = yaml.safe_load((files("gapath.conf") / "config.yaml").read_text("utf-8"))
-    method = yaml_values(task.groups[0], MADE_WITH[task.groups[0]])
-    made = task.make({group: plain.get(group, method) for group in task.groups})
-    problem = make_problem()
+    made, problem = make_task(task), make_problem()
     made.check(problem)
     optimum = made.optimum(problem)
     trials = list(made.trials(Batch("contract", "any", problem, 3, 2), optimum))

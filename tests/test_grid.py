@@ -2,14 +2,16 @@
 
 import math
 
+import naive
 import numpy as np
 import pytest
 from hypothesis import given
-from strategies import weights
+from strategies import problems, weights
 
 from gapath.errors import InputError
 from gapath.grid import MAX_SIDE, GridMap
 from gapath.kernels.units import OBSTACLE
+from gapath.problem import CornerCutting
 
 
 @pytest.mark.parametrize(
@@ -82,3 +84,11 @@ def test_the_digest_tells_maps_apart():
     ]
     assert len({grid.digest for grid in maps}) == len(maps)
     assert maps[0].digest == GridMap("b", np.zeros((2, 3))).digest
+
+
+@given(problems(most=12))
+def test_fields_are_joined_where_a_path_joins_them(problem):
+    grid, start, target = problem.map, problem.start, problem.target
+    for rule in CornerCutting:
+        cost = naive.shortest_cost(grid.weights, start, target, rule.name.lower())
+        assert grid.joined(start, target, rule) == math.isfinite(cost)

@@ -20,7 +20,8 @@ class DriveRow(Row):
     `ga_calls` counts the genetic algorithm's runs, `calls_a` to `calls_c` the calls of any
     planner by part; `replans` counts the steps in which the current path had met an obstacle,
     `returns` how often return mode began, `stands` the steps without a move. `cost`, KG18 eq. (5),
-    and the metrics are those of the fields that the robot passed, in order.
+    and the metrics are those of the fields that the robot passed, in order; the metrics and
+    `length_ratio` are NaN unless it reached its target.
     """
 
     navigator: str
@@ -69,7 +70,8 @@ def drive_row(batch: Batch, trial: int, driven: Drive, optimum: Plan) -> DriveRo
     frames = driven.frames
     reached = driven.outcome is Outcome.REACHED
     trail = _without_stands(frames)
-    passed = Plan(PlanStatus.FOUND, trail, path_weights(batch.problem.map, trail))
+    status = PlanStatus.FOUND if reached else PlanStatus.NOT_FOUND
+    passed = Plan(status, trail, path_weights(batch.problem.map, trail))
     decisions = [frame.decision for frame in frames if frame.decision]
     calls = [call for decision in decisions for call in decision.calls]
     modes = [decision.mode for decision in decisions]

@@ -81,6 +81,58 @@ def cuts_corner(table: NDArray[np.int32], x0: int, y0: int, x1: int, y1: int, ru
     return (first and second) or (rule == FORBID and (first or second))
 
 
+ENDS, OUTSIDE, BLOCKED, APART, CORNER = range(-1, -6, -1)
+"""What can be wrong with a path."""
+
+
+@kernel
+def path_sum(
+    table: NDArray[np.int32],
+    path: NDArray[np.int32],
+    start: tuple[int, int],
+    target: tuple[int, int],
+    rule: int,
+) -> tuple[int, int]:
+    """Sum up the weights of a path's fields, if it is one.
+
+    Parameters
+    ----------
+    table : (rows, cols) int32
+        `GridMap.table`.
+    path : (n, 2) int32
+        Fields as (x, y), n >= 1.
+    start, target : (x, y)
+        What it has to join.
+    rule : int
+        Corner-cutting rule.
+
+    Returns
+    -------
+    total : int
+        In units of 1 / SCALE; or what is wrong: it does not join its ENDS, a field is OUTSIDE the
+        map or BLOCKED by an obstacle, two successive ones are APART, or a step cuts a CORNER.
+    at : int
+        Index of the first field of which that is true, with the step that leads to it.
+    """
+    n, total = path.shape[0], np.int64(0)
+    if (path[0, 0], path[0, 1]) != start or (path[n - 1, 0], path[n - 1, 1]) != target:
+        return np.int64(ENDS), 0
+    for i in range(n):
+        x, y = np.int64(path[i, 0]), np.int64(path[i, 1])
+        if not (0 <= x < table.shape[1] and 0 <= y < table.shape[0]):
+            return np.int64(OUTSIDE), i
+        if table[y, x] >= OBSTACLE:
+            return np.int64(BLOCKED), i
+        total += table[y, x]
+        if i > 0:
+            x0, y0 = np.int64(path[i - 1, 0]), np.int64(path[i - 1, 1])
+            if max(abs(x - x0), abs(y - y0)) != 1:
+                return np.int64(APART), i
+            if cuts_corner(table, x0, y0, x, y, rule):
+                return np.int64(CORNER), i
+    return total, n
+
+
 @kernel(inner=True)
 def steps_inside(position: int, slope_: int, side: int, n: int) -> tuple[int, int]:
     """Find the steps at which a line is on the map along one axis.

@@ -1,4 +1,4 @@
-"""What kernels read of a map: its weights as whole numbers, obstacles apart."""
+"""What kernels read of a map: its weights as whole numbers, obstacles apart; which fields join."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,3 +21,38 @@ def fill_table(weights: NDArray[np.float64], table: NDArray[np.int32]) -> None:
     for i in range(weights.shape[0]):
         entry = np.int32(np.floor(weights[i] * SCALE + 0.5))
         table[i] = np.int32(OBSTACLE) if weights[i] == 1.0 else entry
+
+
+@kernel
+def fill_parts(table: NDArray[np.int32], diagonal: bool, parts: NDArray[np.int32]) -> None:
+    """Give each part of a map, between which there is no way, a number.
+
+    Parameters
+    ----------
+    table : (rows, cols) int32
+        `GridMap.table`.
+    diagonal : bool
+        Fields whose corners touch are neighbours, too.
+    parts : (rows, cols) int32
+        Zeros; overwritten with the number of each free field's part, from 1 on.
+    """
+    rows, cols = table.shape
+    waiting = np.empty(table.size, dtype=np.int32)
+    part = 0
+    for begin in range(table.size):
+        y, x = begin // cols, begin % cols
+        if parts[y, x] != 0 or table[y, x] >= OBSTACLE:
+            continue
+        part += 1
+        parts[y, x] = part
+        waiting[0], count = begin, 1
+        while count > 0:
+            count -= 1
+            y0, x0 = waiting[count] // cols, waiting[count] % cols
+            for y in range(max(y0 - 1, 0), min(y0 + 2, rows)):
+                for x in range(max(x0 - 1, 0), min(x0 + 2, cols)):
+                    beside = diagonal or x == x0 or y == y0
+                    if beside and parts[y, x] == 0 and table[y, x] < OBSTACLE:
+                        parts[y, x] = part
+                        waiting[count] = y * cols + x
+                        count += 1

@@ -23,4 +23,5 @@ def measure(problem: Problem, plan: Plan) -> float:
     float
         In fields; NaN for a path that is not made of such lines.
     """
-    return polyline_length(plan.lines()) if plan.lines else math.nan
+    way_points = plan.lines()
+    return polyline_length(way_points) if len(way_points) else math.nan

@@ -24,7 +24,7 @@ from gapath.grid import Field, Table
 from gapath.kernels.field_of_view import remaining_cost
 from gapath.kernels.s04.genotype import MAX_SIDE
 from gapath.kernels.units import OBSTACLE
-from gapath.problem import CornerCutting, Particular, Plan, Planner
+from gapath.problem import CornerCutting, Particular, Plan, Planner, no_path, nothing
 
 
 class Memory(NamedTuple):
@@ -215,4 +215,4 @@ def _around(query: Situation, sub_target: NDArray[np.int32], side: int) -> Aroun
 def on_map(plan: Plan, around: Around) -> Plan:
     """Move a subsection's plan to where it lies on the map."""
     corner = np.array(around.map.corner, dtype=np.int32)
-    return replace(plan, path=plan.path + corner, trace=None, lines=None, survey=None)
+    return replace(plan, path=plan.path + corner, trace=nothing, lines=no_path, survey=nothing)

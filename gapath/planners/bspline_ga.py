@@ -249,7 +249,7 @@ class Planner:
             epochs=len(result.epochs),
             evaluations=evaluations(self.population, len(result.epochs)),
             trace=partial(self._evolution, result),
-            lines=partial(self._lines, result) if found else None,
+            lines=partial(self._lines, result) if found else no_path,
         )
 
     def _lines(self, result: History) -> NDArray[np.int32]:

@@ -20,7 +20,8 @@ class Planner:
     informed : bool
         True for A*, False for Dijkstra.
     minimise : str
-        "weights": the sum of the weights of the path's fields (KG18 eq. (5));
+        "weights": the sum of the weights of the path's fields (KG18 eq. (5)), and of equal ones
+        the number of its fields;
         "length": the octile length, by which MovingAI's benchmarks are published.
     """
 
@@ -43,5 +44,5 @@ class Planner:
         return self.minimise
 
     def plan(self, problem: Query, stream: Stream) -> Plan:
-        """Find a path of least cost; the stream is not used."""
+        """Find a cheapest path, of several one of the fewest fields; the stream is not used."""
         return shortest_path(problem, self.informed, by_length=self.minimise == "length")

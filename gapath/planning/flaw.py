@@ -3,8 +3,16 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.kernels.units import OBSTACLE, SCALE
-from gapath.problem import CornerCutting, Problem
+from gapath.kernels.lines import APART, BLOCKED, CORNER, ENDS, OUTSIDE, path_sum
+from gapath.kernels.units import SCALE
+from gapath.problem import Problem
+
+_WORDS = {
+    OUTSIDE: "{} is outside the map",
+    BLOCKED: "{} is an obstacle",
+    APART: "two successive fields are not neighbours: {} is no step further",
+    CORNER: "it cuts a corner before {}",
+}
 
 
 def flaw(problem: Problem, path: NDArray[np.int32], cost: float | None = None) -> str | None:
@@ -24,31 +32,18 @@ def flaw(problem: Problem, path: NDArray[np.int32], cost: float | None = None) -
     str or None
         None if the path is a solution.
     """
-    grid = problem.map
     if path.ndim != 2 or path.shape[1] != 2 or not len(path):
         return f"shape {path.shape} instead of (n, 2)"
-    if tuple(path[0]) != problem.start or tuple(path[-1]) != problem.target:
-        return f"it joins {tuple(path[0])} and {tuple(path[-1])}"
-    x, y = path[:, 0], path[:, 1]
-    outside = (x < 0) | (x >= grid.cols) | (y < 0) | (y >= grid.rows)
-    if outside.any():
-        return f"{tuple(path[outside][0])} is outside the map"
-    blocked = grid.table >= OBSTACLE
-    if blocked[y, x].any():
-        return f"{tuple(path[blocked[y, x]][0])} is an obstacle"
-    if (np.abs(np.diff(path, axis=0)).max(axis=1, initial=0) != 1).any():
-        return "two successive fields are not neighbours"
-    if problem.corner_cutting is not CornerCutting.ALLOW:
-        first, second = blocked[y[:-1], x[1:]], blocked[y[1:], x[:-1]]
-        diagonal = (x[:-1] != x[1:]) & (y[:-1] != y[1:])
-        cut = {
-            CornerCutting.ONE_SIDE: first & second,
-            CornerCutting.FORBID: first | second,
-            CornerCutting.NO_DIAGONALS: np.ones_like(first),
-        }[problem.corner_cutting]
-        if (cut & diagonal).any():
-            return "it cuts a corner"
-    true_cost = int(grid.table[y, x].sum(dtype=np.int64)) / SCALE
-    if cost is not None and cost != true_cost:
-        return f"it costs {true_cost}, not {cost}"
+    ends = (problem.start, problem.target)
+    total, at = path_sum(problem.map.table, path, *ends, int(problem.corner_cutting))
+    if total == ENDS:
+        return f"it joins {_field(path, 0)} and {_field(path, -1)}"
+    if total < 0:
+        return _WORDS[total].format(_field(path, at))
+    if cost is not None and cost != total / SCALE:
+        return f"it costs {total / SCALE}, not {cost}"
     return None
+
+
+def _field(path: NDArray[np.int32], at: int) -> tuple[int, ...]:
+    return tuple(path[at].tolist())

@@ -9,7 +9,6 @@ import numpy as np
 
 from gapath.kernels.rng import stream
 from gapath.planning.flaw import flaw
-from gapath.planning.shortest_path import shortest_path
 from gapath.planning.threads import in_order
 from gapath.problem import Batching, Plan, Planner, PlanStatus, Problem
 
@@ -48,14 +47,16 @@ def plan_once(problem: Problem, planner: Planner, seed: int, trial: int = 0) -> 
     Returns
     -------
     Plan
-        The answer; INFEASIBLE without calling the planner if the target is walled in.
+        The answer; INFEASIBLE if the target is walled in, without calling a planner that is not
+        exact.
 
     Raises
     ------
     RuntimeError
         If the planner returns a path that is none.
     """
-    if shortest_path(problem).status is PlanStatus.INFEASIBLE:
+    ends, rule = (problem.start, problem.target), int(problem.corner_cutting)
+    if not planner.exact and not problem.map.joined(*ends, rule):
         return Plan(PlanStatus.INFEASIBLE)
     plan = planner.plan(problem, stream(seed, trial))
     _check(problem, plan, seed, trial)

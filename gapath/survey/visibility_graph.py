@@ -12,7 +12,7 @@ from gapath.kernels.m22.graph import END, START, graph_lengths, line_is_free, sh
 from gapath.kernels.raster import polyline
 from gapath.kernels.units import OBSTACLE, SCALE
 from gapath.planning.stages import Stages
-from gapath.problem import CornerCutting, Graph, Plan, PlanStatus, Query
+from gapath.problem import CornerCutting, Graph, Plan, PlanStatus, Query, no_path
 from gapath.survey.keypoints import Points, Vector, ahead, axis_ends, corners, label, place
 from gapath.survey.obstacle_image import Clearance, Picture, dilate
 from gapath.survey.resizing import coarsest_scale, growth_at, shrunk
@@ -94,7 +94,7 @@ class VisibilityGraph(NamedTuple):
             status=PlanStatus.FOUND,
             path=path,
             weights=cost,
-            lines=None if straight is None else lambda: straight,
+            lines=no_path if straight is None else lambda: straight,
         )
 
     def on_map(self, problem: Query) -> Points:

@@ -166,8 +166,8 @@ def _effort(row: PlanRow) -> dict[str, object]:
     if not math.isinf(row.cost):  # a search that counts no obstacles has no cost without a path
         lines["cost" if row.feasible else "best cost"] = f"{row.cost:g}"
     lines["optimal cost"] = f"{row.optimal_cost:g}"
-    if not math.isnan(row.metrics["line_length"]):
-        lines["length"] = f"{row.metrics['line_length']:.1f} fields in straight lines"
+    if not math.isnan(length := row.metrics.get("line_length", math.nan)):
+        lines["length"] = f"{length:.1f} fields in straight lines"
     if row.epochs:
         lines |= {"epochs": row.epochs, "evaluations": row.evaluations}
     if row.expansions:
@@ -208,8 +208,8 @@ def trial_events(answer: TimedPlan, seed: int, step: int) -> Iterator[Event]:
     """
     plan = answer.plan
     yield TrialStarted(step, answer.number, seed)
-    if answer.number == 0 and plan.survey is not None:
-        yield Surveyed(step, answer.number, plan.survey())
+    if answer.number == 0 and (graph := plan.survey()) is not None:
+        yield Surveyed(step, answer.number, graph)
     if plan.evolution is not None:
         yield Evolved(step, answer.number, 0, plan.evolution)
     yield TrialFinished(step + duration(plan) - 1, answer.number, plan.answer)

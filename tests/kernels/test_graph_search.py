@@ -11,8 +11,12 @@ from hypothesis import strategies as st
 from skimage.graph import MCP
 from strategies import problems
 
+from gapath.components import build
+from gapath.discovery import yaml_values
 from gapath.grid import GridMap
+from gapath.kernels.rng import stream
 from gapath.kernels.units import SCALE
+from gapath.planning import shortest_path as shortest_paths
 from gapath.planning.flaw import flaw
 from gapath.planning.path import octile_length, path_weights
 from gapath.planning.shortest_path import shortest_path
@@ -28,14 +32,17 @@ def naive_search(problem, informed):
     table = grid.table.tolist()
 
     def estimate(x, y):
+        """Of weights and fields; the target is a field that is not counted."""
         distance = max(abs(target[0] - x), abs(target[1] - y))
-        if not informed or distance == 0:
-            return 0
+        if distance == 0:
+            return 0, -1
+        if not informed:
+            return 0, 0
         least = grid.least_weight(start, target)
-        return least * (distance - 1) + table[target[1]][target[0]]
+        return least * (distance - 1) + table[target[1]][target[0]], distance - 1
 
-    queue, number = [(0, 0, start)], 0
-    costs, before, expanded = {start: 0}, {}, set()
+    queue, number = [((0, 0), 0, start)], 0
+    costs, before, expanded = {start: (0, 0)}, {}, set()
     while queue:
         place = heapq.heappop(queue)[2]
         if place == target:
@@ -50,13 +57,14 @@ def naive_search(problem, informed):
             x, y = neighbour = (place[0] + dx, place[1] + dy)
             if naive.is_obstacle(grid.weights, x, y) or neighbour in expanded:
                 continue
-            cost = costs[place] + table[y][x]
+            cost = (costs[place][0] + table[y][x], costs[place][1] + 1)
             cut = naive.forbidden(grid.weights, place, neighbour, rule)
-            if cut or cost >= costs.get(neighbour, math.inf):
+            if cut or cost >= costs.get(neighbour, (math.inf, 0)):
                 continue
             costs[neighbour], before[neighbour] = cost, place
             number += 1
-            heapq.heappush(queue, (cost + estimate(x, y), -number, neighbour))
+            priority = tuple(map(sum, zip(cost, estimate(x, y), strict=True)))
+            heapq.heappush(queue, (priority, -number, neighbour))
     return [], len(expanded)
 
 
@@ -89,6 +97,53 @@ def test_astar_equals_dijkstra_and_bellman(problem):
             assert plan.status is PlanStatus.INFEASIBLE
         else:
             assert flaw(problem, plan.path) is None
+
+
+FLOORS = {"as drawn": None, "nothing": [0.0], "nothing or something": [0.0, 0.5]}
+
+
+def on_floor(problem, floor, seed=0):
+    """The same obstacles, other weights."""
+    weights = problem.map.weights
+    if floor is not None:
+        weights = np.random.default_rng(seed).choice(floor, weights.shape)
+        weights[problem.map.obstacles] = 1.0
+    return Problem(GridMap("floor", weights), problem.start, problem.target, problem.corner_cutting)
+
+
+@pytest.mark.parametrize("name", ["astar", "dijkstra"])
+@pytest.mark.parametrize("floor", FLOORS.values(), ids=FLOORS)
+@given(problem=problems(most=16), seed=st.integers(0, 1000))
+def test_of_the_cheapest_paths_it_is_one_of_the_fewest_fields(name, floor, problem, seed):
+    problem = on_floor(problem, floor, seed)
+    rule = problem.corner_cutting.name.lower()
+    best = naive.fewest_fields(problem.map.weights, problem.start, problem.target, rule)
+    plan = build("planner", yaml_values("planner", name), "planner").plan(problem, stream(0))
+    assert (plan.cost, len(plan.path)) == (best or (math.inf, 0))
+    if best:
+        assert flaw(problem, plan.path, plan.cost) is None
+
+
+@given(problems())
+def test_where_fields_cost_nothing_the_path_is_that_of_fields_that_cost_the_same(problem):
+    for informed in (True, False):
+        paths = [
+            shortest_path(on_floor(problem, [weight]), informed).path.tolist()
+            for weight in (0.0, 0.5, 1 / 65536)
+        ]
+        assert paths[0] == paths[1] == paths[2]
+
+
+def test_a_path_too_long_to_be_counted_is_still_a_cheapest_one(monkeypatch):
+    weights = np.zeros((9, 21))
+    weights[3, :-1] = weights[6, 1:] = 1.0
+    weights[:, 10] = np.maximum(weights[:, 10], 0.5)
+    problem = Problem(GridMap("snake", weights), (0, 0), (20, 8))
+    assert shortest_path(problem).cost == 1.5
+    monkeypatch.setattr(shortest_paths, "FIELD_BITS", 5)
+    plan = shortest_path(problem)
+    assert plan.cost == 1.5
+    assert flaw(problem, plan.path, plan.cost) is None
 
 
 @given(problems())

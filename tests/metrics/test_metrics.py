@@ -11,7 +11,7 @@ from gapath.discovery import kinds, load
 from gapath.grid import GridMap
 from gapath.metrics.clearance import distances
 from gapath.planning.path import path_weights
-from gapath.problem import Plan, PlanStatus, Problem
+from gapath.problem import Plan, PlanStatus, Problem, no_path
 from gapath.task import Row, columns, measured
 
 WEIGHTS = np.full((5, 7), 0.5)
@@ -20,7 +20,7 @@ GRID = GridMap("hand", WEIGHTS)
 PATH = np.array([(0, 0), (1, 1), (2, 1), (3, 1), (4, 2), (4, 3)], dtype=np.int32)
 
 
-def measure(path, lines=None):
+def measure(path, lines=no_path):
     """Measure a path, or part of one."""
     path = np.asarray(path, dtype=np.int32).reshape(-1, 2)
     status = PlanStatus.FOUND if len(path) else PlanStatus.NOT_FOUND
@@ -53,10 +53,13 @@ def test_a_path_of_one_field_is_measured():
     assert (found["length"], found["turns"], found["curvature"]) == (0.0, 0, 0.0)
 
 
-def test_no_path_has_no_metrics():
-    found = measure([])
-    assert found.pop("turns") == 0
-    assert found and all(math.isnan(value) for value in found.values())
+@pytest.mark.parametrize("status", [PlanStatus.NOT_FOUND, PlanStatus.INFEASIBLE])
+@pytest.mark.parametrize("path", [PATH, PATH[:0]], ids=["passed", "none"])
+def test_what_did_not_succeed_has_no_metrics(status, path):
+    """Whatever fields it went over."""
+    found = measured(Problem(GRID, (0, 0), (4, 3)), Plan(status, path, lines=lambda: path))
+    assert found.keys() == set(kinds("metric"))
+    assert all(math.isnan(value) for value in found.values())
 
 
 def test_what_lies_outside_the_map_is_an_obstacle():
@@ -70,5 +73,5 @@ def test_every_metric_says_what_it_is(name):
     assert list(inspect.signature(metric.measure).parameters) == ["problem", "plan"]
     kind = get_type_hints(metric.measure)["return"]
     assert kind in (float, int)
-    assert type(measure(PATH, lambda: PATH)[name]) is kind
-    assert columns(Row)[name] is kind
+    assert type(measure(PATH, lambda: PATH)[name]) is float
+    assert columns(Row)[name] is float

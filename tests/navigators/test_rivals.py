@@ -5,6 +5,9 @@ import pytest
 from drive_strategies import worlds
 from hypothesis import given
 
+from gapath.api import load_map
+from gapath.components import build
+from gapath.discovery import yaml_names, yaml_values
 from gapath.driving.drive import Sensor, drive
 from gapath.driving.known_map import KnownMap
 from gapath.driving.navigation import Situation
@@ -27,6 +30,44 @@ def test_the_target_is_reached_wherever_it_can_be(rival, problem):
     driven = drive(problem, rival, SENSOR, STATIC, 0, 0, 3000, 0.5)
     reachable = shortest_path(problem).feasible
     assert driven.outcome is (Outcome.REACHED if reachable else Outcome.RETURNED)
+
+
+def with_floor(problem, weight):
+    """The same obstacles; everything else costs the same."""
+    grid = GridMap("floor", np.where(problem.map.obstacles, 1.0, weight))
+    return Problem(grid, problem.start, problem.target, problem.corner_cutting)
+
+
+@pytest.mark.parametrize("rival", RIVALS[1:], ids=lambda rival: rival.__module__)
+@given(problem=worlds(RULES))
+def test_where_nothing_costs_anything_drives_are_those_where_everything_costs_the_same(
+    rival, problem
+):
+    free, usual = (
+        drive(with_floor(problem, weight), rival, SENSOR, STATIC, 0, 0, 3000, weight)
+        for weight in (0.0, 0.5)
+    )
+    assert [frame.place for frame in free.frames] == [frame.place for frame in usual.frames]
+
+
+COMPLETE = [
+    name
+    for name in yaml_names("navigator")
+    if build("navigator", yaml_values("navigator", name), "navigator").complete
+]
+
+
+@pytest.mark.parametrize("unknown", [0.0, 0.5])
+@pytest.mark.parametrize("name", COMPLETE)
+def test_where_known_fields_cost_nothing_nobody_wanders(name, unknown):
+    navigator = build("navigator", yaml_values("navigator", name), "navigator")
+    for map_name in ("kg18_map1", "kg18_map4"):
+        grid = load_map(map_name)
+        problem = Problem(grid, grid.start, grid.target)
+        usual = drive(problem, navigator, SENSOR, STATIC, 0, 0, 2000, 0.5)
+        free = drive(with_floor(problem, 0.0), navigator, SENSOR, STATIC, 0, 0, 2000, unknown)
+        assert free.outcome is usual.outcome is Outcome.REACHED
+        assert len(free.frames) < 3 * len(usual.frames)
 
 
 @given(problem=worlds(RULES))

@@ -1,5 +1,6 @@
 """Obvious slow twins, written from the papers' equations; the oracles of the tests."""
 
+import heapq
 import itertools
 from fractions import Fraction
 from math import floor
@@ -173,6 +174,24 @@ def evolve(weights, start, target, planner, words, rule="allow"):
         population = [population[i] for i in selected] + children
         scores = [scores[i] for i in selected] + [evaluate(child) for child in children]
         evaluations += len(children)
+
+
+def fewest_fields(weights, start, target, rule="allow"):
+    """Dijkstra by cost, then by number of fields; both of the best path, or None."""
+    queue, done = [(floor(weights[start[1], start[0]] * 65536 + 0.5), 1, start)], set()
+    while queue:
+        cost, fields, (x, y) = heapq.heappop(queue)
+        if (x, y) == target:
+            return cost / 65536, fields
+        if (x, y) in done:
+            continue
+        done.add((x, y))
+        for dx, dy in itertools.product((-1, 0, 1), repeat=2):
+            place = (x + dx, y + dy)
+            if not (is_obstacle(weights, *place) or forbidden(weights, (x, y), place, rule)):
+                entry = floor(weights[place[1], place[0]] * 65536 + 0.5)
+                heapq.heappush(queue, (cost + entry, fields + 1, place))
+    return None
 
 
 def shortest_cost(weights, start, target, rule="allow"):
