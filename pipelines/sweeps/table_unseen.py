@@ -145,11 +145,12 @@ def summarise_problems(trials: pd.DataFrame, unit: str) -> dict[str, float]:
     -------
     dict
         maps, problems, n (trials); success, the mean of the units' rates, its interval, which
-        counts units, and the least and the greatest of them; medians of seconds and of
-        length_ratio; expected seconds to a path.
+        counts units and is missing for the exact planner, and the least and the greatest of them;
+        medians of seconds and of length_ratio; expected seconds to a path.
     """
     rates = trials.groupby(unit)["feasible"].mean()
-    low, high = wilson(float(rates.mean()), len(rates))
+    chance = not trials["exact"].all()
+    low, high = wilson(float(rates.mean()), len(rates)) if chance else (math.nan, math.nan)
     seconds = trials["plan_time_s"]
     return {
         "maps": trials["map_digest"].nunique(),

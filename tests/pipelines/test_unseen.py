@@ -69,8 +69,9 @@ def test_a_family_worked_by_hand(two_maps):
     least = 4 * (2 + 4 + 1) / 12 / 1000
     assert row["times_exact"] == pytest.approx(row["ert_seconds"] / least)
     assert row["faster"] == 1  # 16 / 6 ms against 3 on the first map, 20 against 1 on the other
-    shown = family.shown.iloc[0]
+    shown, exact = family.shown.to_dict("records")
     assert (shown["Found, %"], shown["By map, %"]) == ("50", "25 to 75")
+    assert (exact["Found, %"], exact["95 % interval"]) == ("100", NOTHING)
     assert shown["Faster than A*: maps"] == "1"
 
 
