@@ -88,7 +88,7 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
 
 
 def by_problem(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> pd.DataFrame:
-    """Give trials the columns `family`, `place`, `problem` and `method`, and `exact`.
+    """Give trials the columns `family`, `place`, `file`, `problem`, `method` and `exact`.
 
     Parameters
     ----------
@@ -101,17 +101,20 @@ def by_problem(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> pd.DataFrame:
     -------
     DataFrame
         A copy; `place` is the map's name and `method` the planner's, without what tells problems
-        apart or the experiments set; `problem` says where from and to; `exact` tells whether the
+        apart or the experiments set; `file` is the map's, whose content may depend on the start
+        (water of MovingAI's); `problem` says where from and to on it; `exact` tells whether the
         planner is the exact one of its family.
     """
     keys = [run.folder.name for run in runs]
     place = dict(zip(keys, map(_place, runs), strict=True))
+    file = {run.folder.name: run.settings.get("map.path", run.known.map) for run in runs}
     method = dict(zip(keys, map(_method, runs), strict=True))
     source = trials["map_source"]
     return trials.assign(
         family=[_FAMILIES[name].title if name in _FAMILIES else name for name in source],
         place=trials["key"].map(place),
-        problem=trials["map_digest"] + trials["start"] + trials["target"],
+        file=trials["key"].map(file),
+        problem=trials["key"].map(file) + trials["start"] + trials["target"],
         method=trials["key"].map(method),
     ).assign(
         exact=lambda frame: [
@@ -139,7 +142,7 @@ def summarise_problems(trials: pd.DataFrame, unit: str) -> dict[str, float]:
     trials : DataFrame
         As `by_problem` gives them, of one planner.
     unit : str
-        The column of what is independent of each other: `map_digest`, or `problem`.
+        The column of what is independent of each other: `file`, or `problem`.
 
     Returns
     -------
@@ -153,7 +156,7 @@ def summarise_problems(trials: pd.DataFrame, unit: str) -> dict[str, float]:
     low, high = wilson(float(rates.mean()), len(rates)) if chance else (math.nan, math.nan)
     seconds = trials["plan_time_s"]
     return {
-        "maps": trials["map_digest"].nunique(),
+        "maps": trials["file"].nunique(),
         "problems": trials["problem"].nunique(),
         "n": len(trials),
         "success": float(rates.mean()),
@@ -180,8 +183,8 @@ def _summaries(trials: pd.DataFrame, by: list[str], unit: str) -> pd.DataFrame:
 
 
 def _families(trials: pd.DataFrame) -> Table:
-    rows = _summaries(trials, ["family"], "map_digest")
-    maps = _summaries(trials, ["family", "map_digest"], "problem")
+    rows = _summaries(trials, ["family"], "file")
+    maps = _summaries(trials, ["family", "file"], "problem")
     faster = maps["times_exact"].lt(1).groupby([maps["family"], maps["method"]]).sum()
     rows["faster"] = [faster[pair] for pair in zip(rows["family"], rows["method"], strict=True)]
     shown = [
@@ -208,7 +211,7 @@ def _families(trials: pd.DataFrame) -> Table:
 
 
 def _maps(trials: pd.DataFrame) -> Table:
-    rows = _summaries(trials, ["family", "place", "map_digest"], "problem")
+    rows = _summaries(trials, ["family", "place", "file"], "problem")
     shown = [
         {
             "Family": row["family"],
@@ -222,7 +225,7 @@ def _maps(trials: pd.DataFrame) -> Table:
     return Table(
         "unseen_maps",
         "Maps that were not chosen, one by one; as above, the interval over problems.",
-        rows,
+        rows.drop(columns="file"),
         pd.DataFrame(shown),
         heads=3,
     )

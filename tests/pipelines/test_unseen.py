@@ -24,11 +24,11 @@ def run_of(preset, path="maps/arena.map", kind="movingai", problem=0, **changes)
     return run
 
 
-def trials(run, found, of, ms=1.0, digest="a", **columns):
+def trials(run, found, of, ms=1.0, **columns):
     frame = pd.DataFrame({"feasible": [i < found for i in range(of)]})
     settings = run.settings
     defaults = {
-        "map_source": settings["map.kind"], "map_digest": digest, "planner": run.known.method,
+        "map_source": settings["map.kind"], "planner": run.known.method,
         "start": f"({settings.get('map.problem', 0)}, 0)", "target": "(9, 9)",
         "plan_time_s": ms / 1000, "length_ratio": math.nan, "key": run.folder.name,
     }  # fmt: skip
@@ -36,7 +36,7 @@ def trials(run, found, of, ms=1.0, digest="a", **columns):
 
 
 def section(*counts):
-    """Make the section from (run, found, of, ms, digest)."""
+    """Make the section from (run, found, of, ms)."""
     frame = pd.concat([trials(*count) for count in counts], ignore_index=True)
     return table_unseen.section(frame, [count[0] for count in counts])
 
@@ -46,12 +46,12 @@ def two_maps():
     """GA 3 and A* on two problems of one map and one of another."""
     rooms = {"path": "x/rooms.map"}
     return section(
-        (run_of("ga3"), 4, 4, 1.0, "a"),
-        (run_of("ga3", problem=1), 2, 4, 3.0, "a"),
-        (run_of("ga3", **rooms), 1, 4, 5.0, "b"),
-        (run_of("astar_length"), 4, 4, 2.0, "a"),
-        (run_of("astar_length", problem=1), 4, 4, 4.0, "a"),
-        (run_of("astar_length", **rooms), 4, 4, 1.0, "b"),
+        (run_of("ga3"), 4, 4, 1.0),
+        (run_of("ga3", problem=1), 2, 4, 3.0),
+        (run_of("ga3", **rooms), 1, 4, 5.0),
+        (run_of("astar_length"), 4, 4, 2.0),
+        (run_of("astar_length", problem=1), 4, 4, 4.0),
+        (run_of("astar_length", **rooms), 4, 4, 1.0),
     )
 
 
