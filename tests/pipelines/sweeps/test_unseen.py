@@ -9,7 +9,7 @@ from gapath.pipelines.numbers.statistics import wilson
 from gapath.pipelines.numbers.text import NOTHING
 from gapath.pipelines.sweeps import table_unseen
 
-from .conftest import record_of
+from ..conftest import record_of
 
 
 def run_of(preset, path="maps/arena.map", kind="movingai", problem=0, **changes):
