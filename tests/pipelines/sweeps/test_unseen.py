@@ -92,6 +92,13 @@ def test_whoever_finds_nothing_is_slower_than_anybody():
     assert shown["Faster than A*: maps"] == "0"
 
 
+def test_digits_that_the_published_length_lacks_are_no_difference():
+    for ratio, shown in ((1.0000003, "0"), (0.9999997, "0"), (1.0437, "4.37"), (math.nan, NOTHING)):
+        run = run_of("astar_length")
+        made = table_unseen.section(trials(run, 2, 2, length_ratio=ratio), [run])
+        assert list(made.tables[0].shown["Length above published, %"]) == [shown]
+
+
 def test_without_an_exact_planner_nothing_is_held_against_it():
     for runs in ([run_of("ga1")], [run_of("ga1", kind="barn", path="maps/x.json")]):
         family, _ = section(*[(run, 2, 4) for run in runs]).tables
