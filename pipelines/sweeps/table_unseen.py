@@ -148,12 +148,14 @@ def summarise_problems(trials: pd.DataFrame, unit: str) -> dict[str, float]:
     -------
     dict
         maps, problems, n (trials); success, the mean of the units' rates, its interval, which
-        counts units and is missing for the exact planner, and the least and the greatest of them;
-        medians of seconds and of length_ratio; expected seconds to a path.
+        counts units, or trials where there is one unit only, and is missing for the exact planner,
+        and the least and the greatest of them; medians of seconds and of length_ratio; expected
+        seconds to a path.
     """
     rates = trials.groupby(unit)["feasible"].mean()
+    units = len(rates) if len(rates) > 1 else len(trials)
     chance = not trials["exact"].all()
-    low, high = wilson(float(rates.mean()), len(rates)) if chance else (math.nan, math.nan)
+    low, high = wilson(float(rates.mean()), units) if chance else (math.nan, math.nan)
     seconds = trials["plan_time_s"]
     return {
         "maps": trials["file"].nunique(),
@@ -224,7 +226,8 @@ def _maps(trials: pd.DataFrame) -> Table:
     ]
     return Table(
         "unseen_maps",
-        "Maps that were not chosen, one by one; as above, the interval over problems.",
+        "Maps that were not chosen, one by one; as above, the interval over problems, or over "
+        "trials where there is one problem only.",
         rows.drop(columns="file"),
         pd.DataFrame(shown),
         heads=3,

@@ -82,6 +82,8 @@ def test_one_by_one_the_interval_counts_problems(two_maps):
     assert (row["problems"], row["n"], row["success"]) == (2, 8, 0.75)
     assert (row["success_low"], row["success_high"]) == wilson(0.75, 2)
     assert row["times_exact"] == pytest.approx((16 / 6) / 3)
+    single = maps.data.iloc[2]
+    assert (single["problems"], single["success_low"]) == (1, wilson(0.25, 4)[0])  # its trials
     assert all(table.latex().isascii() for table in two_maps.tables)
 
 
