@@ -25,6 +25,16 @@ paper: $(VENV)/ready ## do every published experiment and build the report (abou
 	@printf '%s\n' $(OTHERS) | xargs -P 2 -I NAME $(BIN)/gapath experiment=NAME output="$(OUTPUT)"
 	@$(BIN)/gapath-report "$(OUTPUT)"
 
+# Each map, or each kind of planner, is an experiment of its own: conf/experiment/unseen/*.yaml is what they share.
+UNSEEN := $(sort $(patsubst conf/experiment/%.yaml,%,$(wildcard conf/experiment/unseen/*/*.yaml)))
+
+.PHONY: unseen
+unseen: $(VENV)/ready ## public maps that were not chosen, from GAPATH_DATA (some ten minutes)
+	@for name in $(UNSEEN); do \
+	  echo "experiment $$name"; $(BIN)/gapath experiment=$$name output="$(OUTPUT)" || exit $$?; \
+	done
+	@$(BIN)/gapath-report "$(OUTPUT)"
+
 .PHONY: choices
 choices: $(VENV)/ready ## vary what KG18 leaves open, one decision at a time (some four minutes)
 	@$(BIN)/gapath experiment=drive_choices output="$(OUTPUT)"

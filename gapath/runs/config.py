@@ -7,10 +7,11 @@ from importlib.resources import files
 from typing import Any
 
 from omegaconf import DictConfig, OmegaConf
+from omegaconf.errors import InterpolationResolutionError
 
 from gapath.components import build, checked, normalised, typed
 from gapath.discovery import kinds
-from gapath.errors import require
+from gapath.errors import InputError, require
 from gapath.events import Recorder, Settings
 from gapath.grid import GridMap
 from gapath.planning.acceleration import with_kernels
@@ -143,7 +144,7 @@ def make_run(
     InputError
         For anything that is wrong in it, or in the map that it names.
     """
-    loose: Any = OmegaConf.to_container(config, resolve=True)
+    loose = _resolved(config)
     root, chosen = split(loose)
     task = find_task(root.task)
     require(1 <= root.trials <= 10**6, "trials", root.trials, "an integer from 1 to 10^6")
@@ -203,6 +204,15 @@ def _with_types_of(settings: Any, loose: Any) -> Any:
     if isinstance(loose, list) and isinstance(settings, list):
         return [_with_types_of(*pair) for pair in zip(settings, loose, strict=True)]
     return settings
+
+
+def _resolved(config: DictConfig) -> Any:
+    """Replace what is written ${...}; what cannot be is one line, as OmegaConf's is not."""
+    try:
+        return OmegaConf.to_container(config, resolve=True)
+    except InterpolationResolutionError as error:
+        good = "environment variables that are set and settings that there are"
+        raise InputError(error.full_key, str(error).partition("\n")[0], good) from error
 
 
 def split(loose: Mapping[str, Any]) -> tuple[Root, dict[str, Any]]:

@@ -4,6 +4,7 @@ from gapath.pipelines.papers import kg18, m22, s04
 
 RIVALS = {
     "astar": "A*",
+    "astar_length": "A*, by length",
     "dijkstra": "Dijkstra",
     "replan_astar": "Repeated A*",
     "dstar_lite": "D* Lite",

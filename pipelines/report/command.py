@@ -1,9 +1,12 @@
 """The commands behind numbers, written as few as they can be."""
 
+import re
+import shlex
 from collections.abc import Iterable
 
-_LISTS = set(",'\"")
-"""A value with these would read as several in a sweep, or is part of one."""
+_LIST = re.compile(r"\[[^][]*\]")
+_SEVERAL = re.compile(r"[,'\"\s]")
+"""A value with these outside of a list would read as several in a sweep, or as part of one."""
 
 
 def as_sweeps(commands: Iterable[str]) -> list[str]:
@@ -28,15 +31,19 @@ def as_sweeps(commands: Iterable[str]) -> list[str]:
 
 
 def _as_sweep(commands: list[str]) -> list[str]:
-    jobs = [command.split() for command in commands]
+    try:
+        jobs = [shlex.split(command) for command in commands]
+    except ValueError:  # a manifest was edited: quotes without an end
+        return commands
     words, combinations = [], 1
     for column in zip(*jobs, strict=False):
         keys = {word.partition("=")[0] for word in column}
         values = {word.partition("=")[2] for word in column}
-        if len(set(column)) > 1 and (len(keys) > 1 or any(set(value) & _LISTS for value in values)):
+        several = any(_SEVERAL.search(_LIST.sub("", value)) for value in values)
+        if len(set(column)) > 1 and (len(keys) > 1 or several):
             return commands
         joined = ",".join(sorted(values, key=lambda value: (len(value), value)))
         words.append(column[0] if len(set(column)) == 1 else f"{keys.pop()}={joined}")
         combinations *= len(set(column))
     whole = len({len(job) for job in jobs}) == 1 and combinations == len(jobs) > 1
-    return [" ".join([words[0], "-m", *words[1:]])] if whole else commands
+    return [shlex.join([words[0], "-m", *words[1:]])] if whole else commands

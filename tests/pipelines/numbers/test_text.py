@@ -66,13 +66,23 @@ def test_a_sweep_stands_for_exactly_its_jobs(maps, planners):
     [
         ["gapath map=a planner=x", "gapath map=b planner=y"],  # not all combinations
         ["gapath map=a", "gapath planner=x"],
-        ["gapath map.start=[0,1]", "gapath map.start=[0,2]"],
+        ["gapath 'map.path=a,b'", "gapath map.path=c"],
+        ["gapath 'map.path=\"a\"'", "gapath map.path=c"],
+        ["gapath 'map.path=a", "gapath map.path=b"],
         ["gapath map=a", "gapath map=a seed=1"],
         ["", "gapath"],
     ],
 )
 def test_commands_that_are_no_sweep_stay_as_they_are(commands):
     assert as_sweeps(commands) == sorted(commands)
+
+
+def test_lists_and_variables_are_values_of_a_sweep():
+    ends = product(("[0,1]", "[0,2]"), ("a", "b"))
+    jobs = [f"gapath 'map.start={start}' 'map.path=${{oc.env:X}}/{name}'" for start, name in ends]
+    assert as_sweeps(jobs) == [
+        "gapath -m 'map.start=[0,1],[0,2]' 'map.path=${oc.env:X}/a,${oc.env:X}/b'"
+    ]
 
 
 def test_each_experiment_is_a_sweep_of_its_own():
