@@ -7,7 +7,7 @@ from omegaconf import DictConfig, ListConfig, OmegaConf
 from omegaconf.errors import ConfigKeyError, OmegaConfBaseException
 
 from gapath.discovery import kinds, load, yaml_values
-from gapath.errors import InputError, require
+from gapath.errors import InputError, one_of, require
 
 
 def build(group: str, values: dict[str, Any], where: str) -> Any:
@@ -34,7 +34,8 @@ def build(group: str, values: dict[str, Any], where: str) -> Any:
     """
     values = dict(values)
     kind = values.pop("kind", None)
-    require(kind in kinds(group), f"{where}.kind", kind, f"one of {', '.join(kinds(group))}")
+    if kind not in kinds(group):
+        raise InputError(f"{where}.kind", kind, one_of(kind, kinds(group)))
     target = load(group, str(kind))
     made = {
         name: with_planners(value, f"{where}.{name}")
@@ -143,7 +144,7 @@ def checked(target: type[Any], values: object, where: str) -> dict[str, Any]:
         fields = OmegaConf.to_container(merged, resolve=True)
     except ConfigKeyError as error:
         raise InputError(
-            f"{prefix}{error.key}", "an unknown name", f"one of {', '.join(names)}"
+            f"{prefix}{error.key}", "an unknown name", one_of(error.key, names)
         ) from error
     except OmegaConfBaseException as error:
         name = error.full_key or str(error.key or "")

@@ -11,7 +11,7 @@ from functools import lru_cache
 from typing import Any, ClassVar, NamedTuple, Protocol, Self, get_type_hints, runtime_checkable
 
 from gapath.discovery import kinds, load
-from gapath.errors import require
+from gapath.errors import InputError, one_of, require
 from gapath.events import Event, RunStarted
 from gapath.problem import Plan, Problem
 
@@ -234,6 +234,7 @@ def find_task(name: object, where: str = "task") -> type[Task]:
     InputError
         If there is none of that name.
     """
-    require(name in kinds("task"), where, name, f"one of {', '.join(kinds('task'))}")
+    if name not in kinds("task"):
+        raise InputError(where, name, one_of(name, kinds("task")))
     task: type[Task] = load("task", str(name))
     return task

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+import gapath
 from gapath.errors import InputError, require
 from gapath.events import (
     DriveFinished,
@@ -61,6 +62,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="gapath-log", description="Look into the log of a run (run.mcap) and work with it."
     )
+    parser.add_argument("--version", action="version", version=f"gapath-log {gapath.__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     def command(name: str, run: Any, text: str) -> argparse.ArgumentParser:

@@ -10,7 +10,7 @@ from omegaconf import DictConfig, OmegaConf
 
 from gapath.components import build, expanded, typed
 from gapath.discovery import kinds
-from gapath.errors import require
+from gapath.errors import InputError, one_of, require
 from gapath.events import Recorder, Settings
 from gapath.grid import GridMap
 from gapath.problem import CornerCutting, Problem
@@ -191,23 +191,26 @@ def split(loose: Mapping[str, Any]) -> tuple[Root, dict[str, Any]]:
         If a setting of the root is unknown, missing or mistyped, or a group of the task is missing.
     """
     groups = {group for name in kinds("task") for group in find_task(name).groups}
+    known = [*(each.name for each in dataclasses.fields(Root)), *sorted(groups)]
+    for name in loose:
+        if name not in known:
+            raise InputError(name, "an unknown name", one_of(name, known))
     root: Root = typed(Root, {k: v for k, v in loose.items() if k not in groups}, "")
     chosen = {group: loose.get(group) for group in groups}
     for group in find_task(root.task).groups:
         given = chosen[group]
-        require(isinstance(given, dict), group, given, f"settings, which task={root.task} uses")
+        found = "nothing" if given is None else given
+        require(isinstance(given, dict), group, found, f"settings, which task={root.task} uses")
     return root, chosen
 
 
 def read_problem(settings: Root) -> Problem:
     """Read the map and pose the problem that its start and target define."""
     rules = [rule.name.lower() for rule in CornerCutting]
-    require(
-        settings.corner_cutting in rules,
-        "corner_cutting",
-        settings.corner_cutting,
-        f"one of {', '.join(rules)}",
-    )
+    if settings.corner_cutting not in rules:
+        raise InputError(
+            "corner_cutting", settings.corner_cutting, one_of(settings.corner_cutting, rules)
+        )
     grid: GridMap = build("map", settings.map, "map").read()
     named = map_name(grid.name, settings.map)
     if named != grid.name:  # to replace a name takes a copy of the map
