@@ -9,7 +9,7 @@ from omegaconf import OmegaConf
 from omegaconf.errors import ConfigKeyError, OmegaConfBaseException
 
 from gapath.discovery import kinds, load, with_setting, yaml_values
-from gapath.errors import InputError, require
+from gapath.errors import InputError, one_of, require
 
 EXACT = 2**53
 """Below it every whole number is both an int and a float."""
@@ -84,7 +84,8 @@ def _kind_and_settings(
 ) -> tuple[str, dict[str, Any]]:
     values = dict(values)
     kind = values.pop("kind", None)
-    require(kind in kinds(group), f"{where}.kind", kind, f"one of {', '.join(kinds(group))}")
+    if kind not in kinds(group):
+        raise InputError(f"{where}.kind", kind, one_of(kind, kinds(group)))
     target = load(group, str(kind))
     try:
         return str(kind), checked(target, expanded(values), where)
@@ -190,7 +191,7 @@ def checked(target: type[Any], values: object, where: str) -> dict[str, Any]:
         fields = OmegaConf.to_container(merged, resolve=True)
     except ConfigKeyError as error:
         raise InputError(
-            f"{prefix}{error.key}", "an unknown name", f"one of {', '.join(names)}"
+            f"{prefix}{error.key}", "an unknown name", one_of(error.key, names)
         ) from error
     except OmegaConfBaseException as error:
         name = error.full_key or str(error.key or "")

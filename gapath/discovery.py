@@ -9,6 +9,7 @@ does: ``planner/NAME.yaml``.
 import importlib
 import importlib.util
 import pkgutil
+import traceback
 from functools import lru_cache
 from importlib import metadata
 from importlib.resources import files
@@ -18,7 +19,7 @@ from typing import Any
 
 import yaml
 
-from gapath.errors import InputError, require
+from gapath.errors import InputError, one_of, require
 
 PACKAGES = {
     "map": "gapath.mapio",
@@ -132,6 +133,21 @@ def load(group: str, kind: str) -> Any:
     offered = getattr(module, OFFERS[group], None)
     require(offered is not None, module.__name__, "a module without it", f"a {OFFERS[group]}")
     return offered
+
+
+def component_of(error: BaseException) -> str:
+    """Name the component that raised an error: the innermost one, "planner astar"; "" if none."""
+    own = [(group, kind) for group in PACKAGES for kind in kinds(group)]
+    homes = {
+        entry.value if (entry := entry_points(PACKAGES[group]).get(kind))
+        else f"{PACKAGES[group]}.{kind}": f"{group} {kind}"
+        for group, kind in own
+    }  # fmt: skip
+    found = ""
+    for frame, _ in traceback.walk_tb(error.__traceback__):
+        module = str(frame.f_globals.get("__name__"))
+        found = next((homes[m] for m in (module, module.rpartition(".")[0]) if m in homes), found)
+    return found
 
 
 def imported(entry: metadata.EntryPoint) -> ModuleType:
@@ -259,7 +275,7 @@ def yaml_values(group: str, name: str) -> dict[str, Any]:
     candidates = [files(package) / group / f"{name}.yaml" for package in conf_packages()]
     file = next((path for path in candidates if path.is_file()), None)
     if file is None:
-        raise InputError(group, repr(name), f"one of {', '.join(yaml_names(group))}")
+        raise InputError(group, name, one_of(name, yaml_names(group)))
     own: dict[str, Any] = yaml.safe_load(file.read_text("utf-8"))
     bases = [base for base in own.pop("defaults", []) if base != "_self_"]
     values: dict[str, Any] = {}

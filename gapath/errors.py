@@ -1,5 +1,7 @@
 """Bad input: the one exception that says so, and the checks that raise it."""
 
+from collections.abc import Iterable, Mapping
+
 MOST_MEMORY = 1 << 30
 """Bytes that a planner's settings may ask for."""
 
@@ -22,7 +24,7 @@ class InputError(ValueError):
 
     def __init__(self, where: object, value: object, expected: str) -> None:
         self.where, self.value, self.expected = str(where), value, expected
-        super().__init__(f"{where}: got {value}, expected {expected}")
+        super().__init__(f"{where}: got {str(value) or repr('')}, expected {expected}")
 
     def __reduce__(self) -> tuple[type["InputError"], tuple[str, object, str]]:
         return type(self), (self.where, self.value, self.expected)
@@ -49,6 +51,51 @@ def require(condition: bool, where: object, value: object, expected: str) -> Non
     """
     if not condition:
         raise InputError(where, value, expected)
+
+
+def one_of(given: object, names: Iterable[str]) -> str:
+    """Say what would be right in place of an unknown name: the names, if few, and the nearest.
+
+    Parameters
+    ----------
+    given : object
+        What was given.
+    names : iterable of str
+        What there is.
+
+    Returns
+    -------
+    str
+        For an `InputError`, for example "one of 18 names; did you mean ga3?".
+    """
+    names = list(names)
+    few = len(names) <= _FEW
+    listed = ", ".join(names) if few else f"{len(names)} names, see gapath --help"
+    return f"one of {listed}{did_you_mean(given, {name: name for name in names})}"
+
+
+_FEW = 16
+
+
+def did_you_mean(given: object, names: Mapping[str, str]) -> str:
+    """Ask for the nearest of some names; nothing if none is near.
+
+    Parameters
+    ----------
+    given : object
+        What was given.
+    names : mapping of str to str
+        Each name, and how it would be written there.
+
+    Returns
+    -------
+    str
+        Empty, or the end of a sentence.
+    """
+    from difflib import get_close_matches  # only where something is wrong
+
+    near = get_close_matches(str(given).lower(), names, n=1)
+    return f"; did you mean {names[near[0]]}?" if near else ""
 
 
 class Checks:

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, Protocol, Self, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.errors import InputError
+from gapath.errors import InputError, one_of
 from gapath.grid import Field, GridMap, PlanningMap, nearest_free, other_reading
 from gapath.kernels import units
 from gapath.kernels.rng import Stream
@@ -38,8 +38,7 @@ class CornerCutting(IntEnum):
         for rule in cls:
             if rule.setting == name:
                 return rule
-        rules = ", ".join(rule.setting for rule in cls)
-        raise InputError("corner_cutting", name, f"one of {rules}")
+        raise InputError("corner_cutting", name, one_of(name, [rule.setting for rule in cls]))
 
     @cached_property
     def setting(self) -> str:

@@ -20,7 +20,7 @@ from typing import (
 )
 
 from gapath.discovery import kinds, load
-from gapath.errors import require
+from gapath.errors import InputError, one_of, require
 from gapath.events import Event, Finished, RunStarted, TrialStarted
 from gapath.grid import GridMap
 from gapath.planning.path import octile_length
@@ -274,6 +274,7 @@ def find_task(name: object, where: str = "task") -> type[Task]:
     InputError
         If there is none of that name.
     """
-    require(name in kinds("task"), where, name, f"one of {', '.join(kinds('task'))}")
+    if name not in kinds("task"):
+        raise InputError(where, name, one_of(name, kinds("task")))
     task: type[Task] = load("task", str(name))
     return task

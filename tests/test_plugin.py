@@ -116,7 +116,7 @@ def test_its_task_runs_is_logged_recorded_and_reported(site, tmp_path):
         ["kg18_test3", "astar", 2, 1.0]
     ]
     code, _, errors = run(site, tmp_path, "gapath", "task=round_trip", "navigator=kg18")
-    assert code == 2 and "navigator: got task=round_trip" in errors
+    assert code == 2 and "navigator: got kg18 with task=round_trip" in errors
 
 
 WALK = """

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from tabulate import tabulate
 
+import gapath
 from gapath.api import load_map
 from gapath.errors import InputError, require
 from gapath.grid import Field, GridMap
@@ -55,6 +56,8 @@ def main(argv: Sequence[str] | None = None) -> int:
             metavar="X,Y",
             help=f"a field, (0, 0) top left (default: the map's own, else the {corner} corner)",
         )
+    version = f"gapath-genotype {gapath.__version__}"
+    parser.add_argument("--version", action="version", version=version)
     given = parser.parse_args(argv)
     try:
         rows = [_row(load_map(name), given.start, given.target) for name in given.maps]

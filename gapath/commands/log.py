@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+import gapath
 from gapath.errors import InputError, require
 from gapath.events import (
     Event,
@@ -69,6 +70,7 @@ def _parser() -> argparse.ArgumentParser:
         description=f"Look into the log of a run ({FILE}) and work with it. Where a FILE is "
         "read, the folder of a run or its manifest will do, too.",
     )
+    parser.add_argument("--version", action="version", version=f"gapath-log {gapath.__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     def command(name: str, run: Any, text: str, many: bool = False) -> argparse.ArgumentParser:

@@ -5,7 +5,8 @@ import shlex
 import sys
 import traceback
 from collections.abc import Mapping, Sequence
-from typing import NoReturn
+from pathlib import Path
+from typing import Any
 
 from hydra import compose
 from hydra import main as hydra_main
@@ -14,27 +15,22 @@ from hydra.core.global_hydra import GlobalHydra
 from hydra.core.hydra_config import HydraConfig
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.plugins import Plugins
-from hydra.errors import HydraException, OverrideParseException
 from hydra.experimental.callback import Callback
 from hydra.plugins.search_path_plugin import SearchPathPlugin
 from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
-from omegaconf.errors import ConfigAttributeError, ConfigKeyError, OmegaConfBaseException
 
-from gapath.discovery import OFFERS, conf_packages, kinds, with_setting
+import gapath
+from gapath.commands.refusal import BAD_CONFIGURATION, arguments, explain
+from gapath.discovery import component_of, conf_packages, kinds
 from gapath.errors import InputError, require
-from gapath.runs.config import Run, conf_folder, make_run
-from gapath.runs.experiment import Execution, execute
+from gapath.runs.config import HOW, Run, conf_folder, make_run
+from gapath.runs.experiment import Execution, execute, run_folder
 from gapath.store.records import State
+from gapath.store.runfolder import RunFolder
 from gapath.task import find_task
 
 BAD_INPUT, FAILED, INTERRUPTED = 2, 1, 130
-
-BAD_CONFIGURATION = (InputError, HydraException, OmegaConfBaseException)
-
-
-class JobFailed(Exception):
-    """A job failed and has said why; carries the exit code."""
 
 
 class OtherConfigurations(SearchPathPlugin):  # type: ignore[misc]
@@ -56,116 +52,133 @@ class SweepCheck(Callback):  # type: ignore[misc]
         """
         from hydra._internal.core_plugins.basic_sweeper import BasicSweeper
 
-        given = [f"{key}={value}" for key, value in (config.hydra.sweeper.params or {}).items()]
+        params: Any = OmegaConf.to_container(config.hydra.sweeper.params or DictConfig({}))
+        given = [f"{key}={value}" for key, value in params.items()]
+        words = every = [*given, *typed(config.hydra)]
         loader = GlobalHydra.instance().config_loader()
+        folders: dict[Path, list[str]] = {}
         try:
             parser = OverridesParser.create(config_loader=loader)
-            parsed = parser.parse_overrides([*given, *config.hydra.overrides.task])
-            for overrides in BasicSweeper.split_arguments(parsed, None)[0]:
-                config = compose("config", overrides=overrides, return_hydra_config=True)
+            for words in BasicSweeper.split_arguments(parser.parse_overrides(every), None)[0]:
+                config = compose("config", overrides=words, return_hydra_config=True)
                 choices = dict(config.hydra.runtime.choices)
                 OmegaConf.set_struct(config, False)
                 del config["hydra"]
-                check_used(overrides, config.task)
-                make_run(config, choices, settings_of(overrides))
+                check_used(words, config.task)
+                run = make_run(config, choices, settings_of(words))
+                check_apart(run_folder(run).path, words, folders)
+            for folder in folders:
+                RunFolder(folder).create_parent()
         except Exception as error:
-            sys.exit(complain(error))
+            sys.exit(refuse(error, words, sweep=True))
         # Hydra would compose every job once more, only to see whether it can be composed.
         BasicSweeper.validate_batch_is_legal = lambda self, batch: None
 
 
-def job(config: DictConfig) -> None:
+def job(config: DictConfig) -> int:
     """Do one job: one setting and a batch of trials.
 
     Parameters
     ----------
     config : DictConfig
         As Hydra composed it.
+
+    Returns
+    -------
+    int
+        Exit code; an error was told already, so that the other jobs of a sweep go on.
     """
     hydra = HydraConfig.get()
     sweep = hydra.mode == RunMode.MULTIRUN
-    overrides = list(hydra.overrides.task)
+    words = typed(hydra)
+    os.chdir(hydra.runtime.cwd)  # where paths are typed, also with hydra.job.chdir=true
     try:
-        check_used(overrides, config.task)
-        run = make_run(config, hydra.runtime.choices, settings_of(overrides))
-        execution = execute(run, command(overrides, hydra.runtime.config_sources))
-    except BAD_CONFIGURATION as error:
-        fail(complain(error), sweep)
-    except Exception:
-        traceback.print_exc()
-        fail(FAILED, sweep)
-    else:
-        try:
-            print(describe(run, execution, short=sweep), flush=True)
-        except BrokenPipeError:  # gapath ... | head: the run is done, nobody reads on
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        check_used(words, config.task)
+        run = make_run(config, hydra.runtime.choices, settings_of(words))
+        execution = execute(run, command(words, hydra.runtime.config_sources))
+        print(describe(run, execution, short=sweep), flush=True)
+    except BrokenPipeError:  # gapath ... | head: the run is done, nobody reads on
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except Exception as error:
+        return refuse(error, words, sweep)
+    return 0
 
 
-def check_used(overrides: list[str], task: str) -> None:
+def typed(hydra: DictConfig) -> list[str]:
+    """Give what was set on the command line, ``${name}`` as it was typed."""
+    words: Any = OmegaConf.to_container(hydra.overrides.task)
+    return list(map(str, words))
+
+
+def check_used(words: Sequence[str], task: str) -> None:
     """Raise InputError if something was set on the command line that the task does not use."""
+    find_task(task)
     users: dict[str, list[str]] = {}
     for name in kinds("task"):
         for group in find_task(name).groups:
             users.setdefault(group, []).append(name)
-    for override in overrides:
-        (key,) = settings_of([override])
-        able = users.get(key.partition(".")[0], [task])
+    for word in words:
+        key, _, value = word.lstrip("+~").partition("=")
+        group = key.partition(".")[0]
+        able = users.get(group, [task])
         good = " or ".join(f"task={name}" for name in able)
-        require(task in able, key, f"task={task}, which does not use it", good)
+        expected = f"{good}, to which the group {group} belongs"
+        require(task in able, key, f"{value or repr('')} with task={task}", expected)
 
 
-def settings_of(overrides: list[str]) -> list[str]:
-    """Give the names that overrides set."""
-    return [override.partition("=")[0].lstrip("+~") for override in overrides]
+def settings_of(words: Sequence[str]) -> list[str]:
+    """Give the names that are set."""
+    return [word.partition("=")[0].lstrip("+~") for word in words]
 
 
-def command(overrides: list[str], sources: Sequence[Mapping[str, str]]) -> str:
+def check_apart(folder: Path, words: list[str], before: dict[Path, list[str]]) -> None:
+    """Raise InputError if an earlier job of a sweep has the same run folder; else note this one."""
+    first = before.setdefault(folder, words)
+    both = f"{shlex.join(first)} and {shlex.join(words)}, which are one run"
+    require(first is words, "sweep", both, f"jobs that differ in more than {', '.join(HOW)}")
+
+
+def command(words: Sequence[str], sources: Sequence[Mapping[str, str]]) -> str:
     """Give the command that does the same job, wherever its folder lies."""
-    kept = [o for o in overrides if not o.startswith(("output=", "force="))]
+    kept = [word for word in words if not word.startswith(("output=", "force="))]
     own = [source["path"] for source in sources if source["provider"] == "command-line"]
     return shlex.join(["gapath", *(f"--config-dir={path}" for path in own), *kept])
 
 
-def fail(code: int, sweep: bool) -> NoReturn:
-    """End a job; in a sweep so that the other jobs go on.
+def refuse(error: Exception, words: Sequence[str], sweep: bool) -> int:
+    """Tell in one line why something cannot be done, and give the exit code.
 
-    Raises
-    ------
-    JobFailed
-        In a sweep; Hydra raises it again after the last job.
-    SystemExit
-        Otherwise.
+    Parameters
+    ----------
+    error : Exception
+        What was raised. One that is no `BAD_CONFIGURATION` and not the system's is a fault of
+        some component: its traceback is in the run's ``status.json``, or else is printed.
+    words : sequence of str
+        What was set on the command line.
+    sweep : bool
+        Whether it was called for one.
+
+    Returns
+    -------
+    int
+        `BAD_INPUT` or `FAILED`.
     """
-    if sweep:
-        raise JobFailed(code)
-    sys.exit(code)
-
-
-def complain(error: Exception) -> int:
-    """Print what is wrong with the input and give the exit code."""
-    if isinstance(error, OSError) and not isinstance(error, HydraException):
-        error = InputError(
-            "output", error.filename, f"a folder that can be written ({error.strerror})"
-        )
-    if isinstance(error, OverrideParseException):
-        name, equals, value = str(error.override).partition("=")
-        quoted = shlex.quote(f'{name}="{value}"')
-        right = f"quotes around what is no plain word, {quoted}"
-        if value[:1] in ("[", "{", "(", '"', "'"):
-            right = "a whole list [x, y], mapping {name: value} or quoted text"
-        error = (
-            InputError(name, value, right) if equals else InputError(name, "no value", "NAME=VALUE")
-        )
-    if isinstance(error.__cause__, ConfigKeyError | ConfigAttributeError):
-        key = str(error.__cause__.full_key)
-        group, _, name = key.partition(".")
-        if group in OFFERS and (others := with_setting(group, name)):
-            error = InputError(key, f"an unknown name with this {group}", f"{others}, which has it")
-    reason = str(error).partition("\nConfig search path")[0] or type(error).__name__
-    hidden = error.__cause__ if isinstance(error, HydraException) else None
-    cause = str(hidden or "").partition("\n")[0]
-    print(f"gapath: {reason}{f' ({cause})' if cause else ''}", file=sys.stderr, flush=True)
-    return BAD_INPUT
+    code, notes = BAD_INPUT, getattr(error, "__notes__", ())
+    inside = bool(notes) and not isinstance(error, BAD_CONFIGURATION)  # of a run that had begun
+    line = None if inside else explain(error, words, sweep)
+    if line is None and isinstance(error, OSError) and not inside:
+        expected = "a file or folder that can be written"
+        line = str(InputError(error.filename or "standard output", error.strerror, expected))
+    if line is None:
+        code = FAILED
+        if not notes:
+            traceback.print_exception(error)
+        last = traceback.extract_tb(error.__traceback__)[-1]
+        where = f"{Path(last.filename).name}, line {last.lineno}"
+        what = " ".join(f"{type(error).__name__}: {error}".split())
+        line = "; ".join([f"{component_of(error)}: {what} ({where})".lstrip(": "), *notes])
+    print(f"gapath: {line}", file=sys.stderr, flush=True)
+    return code
 
 
 def describe(run: Run, execution: Execution, short: bool) -> str:
@@ -217,13 +230,26 @@ def main() -> None:
     """Run the command ``gapath``; exits with 0, 1 (a job failed) or 2 (bad input)."""
     Plugins.instance().register(OtherConfigurations)
     os.environ["HYDRA_FULL_ERROR"] = "1"  # errors come here instead of being printed
+    words: list[str] = []
+    failed: list[int] = []
+    sweep = False
+
+    def task(config: DictConfig) -> None:
+        if code := job(config):
+            failed.append(code)
+
     try:
-        hydra_main(version_base="1.3", config_path=conf_folder(), config_name="config")(job)()
-    except JobFailed as failure:
-        sys.exit(failure.args[0])
+        if "--version" in sys.argv[1:]:  # Hydra would give its own
+            print("gapath", gapath.__version__)
+            return
+        given = arguments()
+        words, sweep = given.overrides, given.multirun
+        hydra_main(version_base="1.3", config_path=conf_folder(), config_name="config")(task)()
     except KeyboardInterrupt:
         sys.exit(INTERRUPTED)
     except BrokenPipeError:  # gapath --help | head
         sys.stderr.close()
     except Exception as error:  # a job catches its own: this is a command line that is wrong
-        sys.exit(complain(error))
+        sys.exit(refuse(error, words, sweep))
+    if failed:
+        sys.exit(failed[0])

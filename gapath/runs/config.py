@@ -11,7 +11,7 @@ from omegaconf.errors import InterpolationResolutionError
 
 from gapath.components import build, checked, normalised, typed
 from gapath.discovery import kinds
-from gapath.errors import InputError, require
+from gapath.errors import InputError, one_of, require
 from gapath.events import Recorder, Settings
 from gapath.grid import GridMap
 from gapath.planning.acceleration import with_kernels
@@ -236,6 +236,10 @@ def split(loose: Mapping[str, Any]) -> tuple[Root, dict[str, Any]]:
         If a setting of the root is unknown, missing or mistyped, or a group of the task is missing.
     """
     groups = {group for name in kinds("task") for group in find_task(name).groups}
+    known = [*(each.name for each in dataclasses.fields(Root)), *sorted(groups)]
+    for name in loose:
+        if name not in known:
+            raise InputError(name, "an unknown name", one_of(name, known))
     root: Root = typed(Root, {k: v for k, v in loose.items() if k not in groups}, "")
     root.map = normalised("map", root.map, "map")
     root.recorder = {
@@ -245,7 +249,8 @@ def split(loose: Mapping[str, Any]) -> tuple[Root, dict[str, Any]]:
     chosen = {group: loose.get(group) for group in groups}
     for group in find_task(root.task).groups:
         given = chosen[group]
-        require(isinstance(given, dict), group, given, f"settings, which task={root.task} uses")
+        found = "nothing" if given is None else given
+        require(isinstance(given, dict), group, found, f"settings, which task={root.task} uses")
     return root, chosen
 
 

@@ -2,17 +2,20 @@
 
 import traceback
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import yaml
 
+from gapath.discovery import component_of
+from gapath.errors import InputError
 from gapath.events import Event, RunFinished, RunStarted
 from gapath.planning.acceleration import AUTO, with_kernels
 from gapath.problem import Plan
 from gapath.runs.config import Run, task_of
-from gapath.store.durable import write_whole
+from gapath.store.durable import named, write_whole
 from gapath.store.keys import run_key, setting_hash, versions
 from gapath.store.records import (
     CONFIG,
@@ -120,21 +123,26 @@ def execute(run: Run, command: str, progress: bool = True) -> Execution:
     Raises
     ------
     InputError
-        If the folder cannot be written.
+        If the folder, or a file in it, cannot be written.
     """
-    key = run_key(run.settings, run.problem, run.inputs)
-    folder = RunFolder(Path(run.output) / run.experiment / key)
+    folder = run_folder(run)
     folder.create()
     try:
         with folder.lock():
             if is_whole(folder) and not run.force:
                 return Execution(folder.path, State.SKIPPED, [], [])
-            return _execute_held(run, folder, key, command, progress)
+            return _execute_held(run, folder, command, progress)
     except Busy:
         return Execution(folder.path, State.BUSY, [], [])
 
 
-def _execute_held(run: Run, folder: RunFolder, key: str, command: str, progress: bool) -> Execution:
+def run_folder(run: Run) -> RunFolder:
+    """Give the folder of a run, which is named by its key."""
+    key = run_key(run.settings, run.problem, run.inputs)
+    return RunFolder(Path(run.output) / run.experiment / key)
+
+
+def _execute_held(run: Run, folder: RunFolder, command: str, progress: bool) -> Execution:
     started = now()
     Status(State.RUNNING, started).write(folder)
     try:
@@ -145,7 +153,7 @@ def _execute_held(run: Run, folder: RunFolder, key: str, command: str, progress:
         write_whole(folder.path / TRIALS, _table(run, rows))
         names = [CONFIG, TRIALS, *recorded]
         folder.keep_only([*names, STATUS, MANIFEST])
-        _manifest(run, folder, key, command, names).write(folder)
+        _manifest(run, folder, command, names).write(folder)
         state = State.DONE if optimum.feasible else State.INFEASIBLE
         Status(state, started, now()).write(folder)
         return Execution(folder.path, state, rows, [*names, MANIFEST, STATUS])
@@ -153,7 +161,9 @@ def _execute_held(run: Run, folder: RunFolder, key: str, command: str, progress:
         interrupted = isinstance(error, KeyboardInterrupt)
         state = State.INTERRUPTED if interrupted else State.FAILED
         message = "" if interrupted else traceback.format_exc()
-        Status(state, started, now(), message).write(folder)
+        with suppress(InputError):  # a full disk has no room for this, either
+            Status(state, started, now(), message).write(folder)
+        error.add_note(f"the traceback is in {folder.path / STATUS}")
         raise
 
 
@@ -191,9 +201,14 @@ def _do_trials(
             rows.append(trial.row)
         record(RunFinished(step, run.trials, found))
         return rows, [name for recorder in run.recorders for name in recorder.close()]
-    except BaseException:
+    except BaseException as error:
         for recorder in run.recorders:
-            recorder.abort()
+            with suppress(OSError):  # on a full disk a file's last bytes have no room, either
+                recorder.abort()
+        where = component_of(error)
+        if where.startswith("recorder "):
+            with named(f"{folder.path}, {where}"):
+                raise
         raise
 
 
@@ -205,9 +220,9 @@ def _table(run: Run, rows: list[Any]) -> bytes:
     return parquet(types, [row.values() for row in rows], own)
 
 
-def _manifest(run: Run, folder: RunFolder, key: str, command: str, names: list[str]) -> Manifest:
+def _manifest(run: Run, folder: RunFolder, command: str, names: list[str]) -> Manifest:
     return Manifest(
-        key=key,
+        key=folder.path.name,
         setting=setting_hash(run.settings, run.problem, run.method_inputs),
         experiment=run.experiment,
         task=run.task.name,

@@ -1,7 +1,32 @@
 """Files that are there whole or not at all, even after a crash."""
 
+import contextlib
 import os
+from collections.abc import Iterator
 from pathlib import Path
+
+from gapath.errors import InputError
+
+
+@contextlib.contextmanager
+def named(path: object) -> Iterator[None]:
+    """Name the file that could not be written: what the system says of a full disk does not.
+
+    Parameters
+    ----------
+    path : Path or str
+        The file, or what writes it, unless the system names one.
+
+    Raises
+    ------
+    InputError
+        For an OSError.
+    """
+    try:
+        yield
+    except OSError as error:
+        expected = "a place that can be written and has room; then run it again"
+        raise InputError(error.filename or path, error.strerror or error, expected) from error
 
 
 def part_of(path: Path) -> Path:
@@ -18,8 +43,13 @@ def write_part(path: Path, data: bytes) -> None:
         The file's final name.
     data : bytes
         All of its content.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
     """
-    with part_of(path).open("wb") as file:
+    with named(path), part_of(path).open("wb") as file:
         file.write(data)
         file.flush()
         os.fsync(file.fileno())
@@ -34,13 +64,19 @@ def publish(source: Path, target: Path) -> None:
         A file whose content is durable, on the same file system.
     target : Path
         Its name from now on; a file of that name is replaced.
+
+    Raises
+    ------
+    InputError
+        If it cannot be given.
     """
-    source.replace(target)
-    folder = os.open(target.parent, os.O_RDONLY)
-    try:
-        os.fsync(folder)
-    finally:
-        os.close(folder)
+    with named(target):
+        source.replace(target)
+        folder = os.open(target.parent, os.O_RDONLY)
+        try:
+            os.fsync(folder)
+        finally:
+            os.close(folder)
 
 
 def write_whole(path: Path, data: bytes) -> None:
@@ -52,6 +88,11 @@ def write_whole(path: Path, data: bytes) -> None:
         The file.
     data : bytes
         All of its content.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
     """
     write_part(path, data)
     publish(part_of(path), path)

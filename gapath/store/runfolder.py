@@ -37,13 +37,22 @@ class RunFolder:
         InputError
             If it cannot be written.
         """
-        try:
+        with self._named():
             self.path.mkdir(parents=True, exist_ok=True)
             (self.path / LOCK).touch()
+
+    def create_parent(self) -> None:
+        """Make the folder that it is to be in; raises InputError as `create` does."""
+        with self._named():
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+
+    @contextlib.contextmanager
+    def _named(self) -> Iterator[None]:
+        try:
+            yield
         except OSError as error:
-            raise InputError(
-                "output", self.path, f"a folder that can be written ({error.strerror})"
-            ) from error
+            expected = f"a folder that can be written ({error.strerror})"
+            raise InputError("output", self.path.parents[1], expected) from error
 
     @contextlib.contextmanager
     def lock(self) -> Iterator[None]:

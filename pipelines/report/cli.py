@@ -5,6 +5,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+import gapath
 from gapath.errors import InputError
 
 _EPILOG = """\
@@ -58,6 +59,8 @@ def _report_parser() -> argparse.ArgumentParser:
                         "writes it")  # fmt: skip
     parser.add_argument("-o", "--output", type=Path, metavar="DIR", help="where to write "
                         "[OUTPUTS/report]")  # fmt: skip
+    version = f"gapath-report {gapath.__version__}"
+    parser.add_argument("--version", action="version", version=version)
     return parser
 
 

@@ -1,6 +1,7 @@
 """The command: what it prints, writes and refuses."""
 
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -92,7 +93,7 @@ def test_a_sweep_does_every_setting_and_goes_on_after_a_failure(gapath, tmp_path
         "trials=3",
     )
     assert code == 1
-    assert "no luck" in errors
+    assert "gapath: RuntimeError: no luck (test_cli.py, line " in errors
     lines = [line for line in text.splitlines() if "of 3 found" in line]
     assert [line.split(":")[0].split()[1] for line in lines] == [
         "ga1[population=12]",
@@ -123,8 +124,13 @@ def test_a_failing_run_says_so_in_its_folder(gapath, tmp_path, monkeypatch):
     monkeypatch.setattr("gapath.tasks.plan.plan_trials", lambda *given: 1 / 0)
     code, _, errors = gapath("map=kg18_test1")
     assert code == 1
-    assert "ZeroDivisionError" in errors
-    status = json.loads((only(tmp_path / "out" / "plan") / "status.json").read_bytes())
+    folder = only(tmp_path / "out" / "plan")
+    assert re.fullmatch(
+        r"gapath: task plan: ZeroDivisionError: division by zero \(test_cli.py, line \d+\); "
+        f"the traceback is in {folder}/status.json\n",
+        errors,
+    )
+    status = json.loads((folder / "status.json").read_bytes())
     assert status["state"] == "failed"
     assert "ZeroDivisionError" in status["message"]
 
@@ -162,13 +168,13 @@ def test_an_interrupted_run_says_so(gapath, tmp_path, monkeypatch):
         (["map=image", "map.path=plan (2).png"], """'map.path="plan (2).png"'"""),
         (["+planner.colour=red"], "planner.colour: got an unknown name"),
         (["+colour=red"], "colour: got an unknown name"),
-        (["planner=ga9"], "planner/ga9"),
-        (["planner=null"], "NoneType"),
+        (["planner=ga9"], "planner: got ga9, expected one of "),
+        (["planner=null"], "planner: got null, expected one of "),
         (["~planner"], "planner"),
         (["task=fly"], "task: got fly"),
-        (["navigator=sedighi"], "navigator: got task=plan, which does not use it"),
-        (["task=drive", "planner=ga1"], "planner: got task=drive, which does not use it"),
-        (["-m", "drive.step_limit=5,6"], "drive.step_limit: got task=plan"),
+        (["navigator=sedighi"], "navigator: got sedighi with task=plan, expected task=drive"),
+        (["task=drive", "planner=ga1"], "planner: got ga1 with task=drive, expected task=plan"),
+        (["-m", "drive.step_limit=5,6"], "drive.step_limit: got 5 with task=plan"),
         (["task=drive", "threads=2"], "threads: got 2, expected 1 with task=drive"),
         (["task=drive", "drive.sensor.range=-1"], "drive.sensor.range: got -1"),
         (["task=drive", "drive.sensor.colour=1"], "drive.sensor.colour"),
@@ -176,13 +182,13 @@ def test_an_interrupted_run_says_so(gapath, tmp_path, monkeypatch):
         (["task=drive", "drive.unknown_weight=1"], "drive.unknown_weight: got 1"),
         (["task=drive", "drive.changes.lifetime=0"], "drive.changes.lifetime: got 0"),
         (["task=drive", "drive.known_map=gone.map"], "gone.map"),
-        (["task=drive", "navigator=pilot"], "navigator/pilot"),
+        (["task=drive", "navigator=pilot"], "navigator: got pilot"),
         (["task=drive", "navigator.explore_interval=0"], "navigator.explore_interval: got 0"),
         (["task=drive", "navigator.retreat_interval=[3,2]"], "navigator.retreat_interval"),
         (["task=drive", "navigator.explore.population=1"], "navigator.explore.population: got 1"),
         (["task=drive", "navigator.explore.base=ga9"], "ga9"),
         (["planner.kind=os"], "planner.kind: got os"),
-        (["map=nowhere"], "map/nowhere"),
+        (["map=nowhere"], "map: got nowhere"),
         (["map.instance=-1"], "map.instance: got -1"),
         (["map.map_class=kg18_test9"], "map.map_class: got kg18_test9"),
         (["trials=0"], "trials: got 0"),
@@ -194,7 +200,7 @@ def test_an_interrupted_run_says_so(gapath, tmp_path, monkeypatch):
         (["recorder.rerun.trials=[3]"], "recorder.rerun.trials: got [3]"),
         (["recorder.rerun.trials=[a]"], "recorder.rerun.trials"),
         (["recorder.mcap.flush_every=0"], "recorder.mcap.flush_every: got 0"),
-        (["recorder=tape"], "recorder/tape"),
+        (["recorder=tape"], "recorder: got tape"),
         (["map=file"], "map.path: got nothing"),
         (["map=file", "map.path=gone.map"], "gone.map"),
         (["map=file", "map.path=notes.doc"], "map.path: got notes.doc"),
@@ -214,7 +220,7 @@ def test_an_interrupted_run_says_so(gapath, tmp_path, monkeypatch):
         (["map=rosmap", "map.path=flat.yaml", *ENDS], "resolution"),
         (["map=rosmap", "map.path=flat.yaml", "map.unknown=maybe", *ENDS], "map.unknown"),
         (["-m", "planner=ga1,ga2", "planner.population=20,2"], "planner.population: got 2"),
-        (["-m", "planner=ga1,ga9"], "planner/ga9"),
+        (["-m", "planner=ga1,ga9"], "planner: got ga9"),
         (["-m", "map=kg18_test1,file"], "map.path"),
     ],
 )
@@ -239,6 +245,7 @@ def test_bad_input_is_one_clear_error(gapath, tmp_path, arguments, named):
     assert named in errors
     assert "Traceback" not in errors
     assert errors.startswith("gapath: ")
+    assert errors.count("\n") == 1
     assert text == ""
     assert not (tmp_path / "out").exists()
 

@@ -1,0 +1,183 @@
+"""Why a command line cannot be used, in one line: what Hydra says, said of a setting."""
+
+import argparse
+import contextlib
+import shlex
+from collections.abc import Iterator, Sequence
+from typing import Any, NoReturn
+
+from hydra import compose, initialize_config_dir
+from hydra._internal.utils import get_args_parser
+from hydra.core.global_hydra import GlobalHydra
+from hydra.core.override_parser.overrides_parser import OverridesParser
+from hydra.core.override_parser.types import Override
+from hydra.errors import HydraException, MissingConfigException, OverrideParseException
+from omegaconf import DictConfig
+from omegaconf.errors import OmegaConfBaseException
+
+from gapath.discovery import OFFERS, with_setting
+from gapath.errors import InputError, did_you_mean, one_of
+from gapath.runs.config import conf_folder
+
+BAD_CONFIGURATION = (InputError, HydraException, OmegaConfBaseException)
+"""What is raised where a command line or a configuration is wrong."""
+
+
+def arguments() -> argparse.Namespace:
+    """Read the command line as Hydra will; raises InputError for an unknown option."""
+
+    def refuse(message: str) -> NoReturn:
+        raise InputError("command line", message, "key=value, and options of `gapath --hydra-help`")
+
+    parser: Any = get_args_parser()
+    parser.error = refuse
+    given: argparse.Namespace = parser.parse_args()
+    return given
+
+
+def explain(error: Exception, words: Sequence[str], sweep: bool) -> str | None:
+    """Say what is wrong with a command line.
+
+    Parameters
+    ----------
+    error : Exception
+        What was raised.
+    words : sequence of str
+        What was set on the command line, ``key=value`` each.
+    sweep : bool
+        Whether it was called for one.
+
+    Returns
+    -------
+    str or None
+        One line: the setting, what was found there, and what would be right. None if nothing is
+        found to be wrong, and the error is none of `BAD_CONFIGURATION`.
+    """
+    if not isinstance(error, InputError):
+        error = _found(error, words, sweep) or error
+    if isinstance(error, InputError):
+        return " ".join(str(error).split())
+    if not isinstance(error, BAD_CONFIGURATION):
+        return None
+    said = (getattr(error, "full_key", ""), error, error.__cause__)
+    lines = [str(each).strip().partition("\n")[0] for each in said if each]
+    return ": ".join(lines) or type(error).__name__
+
+
+def _found(error: Exception, words: Sequence[str], sweep: bool) -> InputError | None:
+    """Find the setting that an error of Hydra's is about, and what would be right."""
+    if isinstance(error, MissingConfigException) and "/" in (error.missing_cfg_file or ""):
+        group, _, name = error.missing_cfg_file.rpartition("/")
+        with _hydra():
+            names = error.options or GlobalHydra.instance().config_loader().get_group_options(group)
+        return InputError(group, name, one_of(name, names))
+    with _hydra():
+        if isinstance(error, OverrideParseException):
+            return _unreadable(error.override)
+        parsed = OverridesParser.create().parse_overrides(list(words))
+        groups = set(GlobalHydra.instance().config_loader().list_groups(""))
+        chosen = [
+            each
+            for each in parsed
+            if each.key_or_group in groups and not isinstance(each.value(), dict)
+        ]
+        plain = compose("config", return_hydra_config=True)
+        faults = [_fault_of_choice(each, plain, sweep) for each in chosen]
+        if not any(faults):
+            names = [each.input_line for each in chosen if not each.is_sweep_override()]
+            with contextlib.suppress(*BAD_CONFIGURATION):
+                config = compose("config", overrides=names, return_hydra_config=True)
+                others = [each for each in parsed if each not in chosen]
+                faults = [_fault_of_value(each, config, groups, sweep) for each in others]
+        return next(filter(None, faults), None)
+
+
+@contextlib.contextmanager
+def _hydra() -> Iterator[None]:
+    """Use Hydra as it is, or start it again after it has ended."""
+    if GlobalHydra.instance().is_initialized():
+        yield
+    else:
+        with initialize_config_dir(conf_folder(), version_base="1.3"):
+            yield
+
+
+def _unreadable(word: str) -> InputError:
+    key, equals, value = word.partition("=")
+    if equals and value[:1] in ("[", "{", "(", '"', "'"):
+        return InputError(key, value, "a whole list [x, y], mapping {name: value} or quoted text")
+    if equals:
+        quoted = shlex.quote(f'{key}="{value}"')
+        return InputError(key, value, f"quotes around what is no plain word, {quoted}")
+    loader = GlobalHydra.instance().config_loader()
+    every = {name: f"{group}={name}"
+             for group in loader.list_groups("") for name in loader.get_group_options(group)
+             if group != "hydra"}  # fmt: skip
+    return InputError(word, "a word alone", f"key=value{did_you_mean(word, every)}")
+
+
+def _fault_of_choice(override: Override, plain: DictConfig, sweep: bool) -> InputError | None:
+    """Tell what is wrong with the choice of a YAML."""
+    key, word = override.key_or_group, override.input_line
+    value = word.partition("=")[2]
+    if override.is_sweep_override():
+        return _fault_of_sweep(override, sweep)
+    names = GlobalHydra.instance().config_loader().get_group_options(key)
+    single = key in plain.hydra.runtime.choices
+    added = not single and key not in plain
+    chosen = override.value()
+    chosen = chosen if isinstance(chosen, list) and not single else [chosen]
+    if not override.is_delete() and not all(isinstance(name, str) for name in chosen):
+        return InputError(key, value, one_of(value, names) + ("" if single else ", or a list"))
+    if added and not override.is_add():
+        return InputError(key, value, f"+{word}")
+    if single and override.is_add():
+        return InputError(key, word, word.removeprefix("+"))
+    return None
+
+
+def _fault_of_value(
+    override: Override, config: DictConfig, groups: set[str], sweep: bool
+) -> InputError | None:
+    """Tell what is wrong with setting a value in what the chosen YAMLs give."""
+    key, word = override.key_or_group, override.input_line
+    if not key:
+        return InputError(repr(word), "no name", "key=value")
+    if fault := _fault_of_sweep(override, sweep):
+        return fault
+    place: Any = config
+    done: list[str] = []
+    for step in key.split("."):
+        if not isinstance(place, DictConfig):
+            return InputError(key, "an unknown name", f"{'.'.join(done)}, which is one value")
+        names = [str(name) for name in place]
+        if not done and step != "hydra":
+            names = sorted({*names, *groups} - {"hydra"})
+        if step not in names:
+            if override.is_add():
+                return None  # whoever uses it knows whether there may be one
+            where = ".".join([*done, step])
+            group = done[0] if len(done) == 1 else ""
+            if group in OFFERS and (others := with_setting(group, step)):
+                return InputError(
+                    where, f"an unknown name with this {group}", f"{others}, which has it"
+                )
+            return InputError(where, "an unknown name", one_of(step, names))
+        done.append(step)
+        place = place._get_node(step)
+    if isinstance(override.value(), dict) and isinstance(place, DictConfig):
+        names = [str(name) for name in place]
+        for name in override.value():
+            if name not in names and not override.is_add():
+                return InputError(f"{key}.{name}", "an unknown name", one_of(name, names))
+    if override.is_add() and not override.is_force_add():
+        return InputError(key, word, word.removeprefix("+"))
+    return None
+
+
+def _fault_of_sweep(override: Override, sweep: bool) -> InputError | None:
+    if not override.is_sweep_override() or sweep:
+        return None
+    value = override.input_line.partition("=")[2]
+    expected = "one value; gapath -m runs a sweep over several"
+    return InputError(override.key_or_group, value, expected)

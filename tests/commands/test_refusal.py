@@ -1,0 +1,103 @@
+"""A command line that is wrong: one line names the setting, the value and what would be right."""
+
+import re
+from importlib import import_module
+from importlib.metadata import version
+
+import pytest
+
+MAPS = r"one of \d+ names, see gapath --help"
+ROOT = "choice, corner_cutting, drive, experiment, force, kernels, map, name, navigator, output, "
+ROOT += "planner, recorder, seed, task, threads, trials"
+
+CASES = {
+    # A name that there is not.
+    "planner=ga33": f"planner: got ga33, expected {MAPS}; did you mean ga3\\?",
+    "map=kg18_tset3": rf"map: got kg18_tset3, expected {MAPS}; did you mean kg18_test\d\?",
+    "map=": f"map: got '', expected {MAPS}",
+    "recorder=[mcap,reruns]": "recorder: got reruns, expected one of mcap, none, rerun; did you "
+    r"mean rerun\?",
+    "experiment=tabl1": r"experiment: got tabl1, expected one of .*, table1; did you mean table1\?",
+    "task=drvie": r"task: got drvie, expected one of drive, plan; did you mean drive\?",
+    "task=": "task: got '', expected one of drive, plan",
+    "corner_cutting=forbidd": r"corner_cutting: got forbidd, expected one of .*mean forbid\?",
+    "planner.kind=grid_serch": r"planner\.kind: got grid_serch, .*; did you mean grid_search\?",
+    "task=drive navigator.explore.base=ga33": rf"planner: got ga33, expected {MAPS}; .* ga3\?",
+    # A setting that there is not.
+    "planner.populaton=3": r"planner\.populaton: got an unknown name, expected one of kind, "
+    r"population, .*; did you mean population\?",
+    "map=file map.pth=a.map": r"map\.pth: got an unknown name, expected one of .* mean path\?",
+    "+foo=1": "foo: got an unknown name, expected one of task, .*, drive, navigator, planner",
+    "plannr=ga1": rf"plannr: got an unknown name, expected one of {ROOT}; did you mean planner\?",
+    "experimnt=table1": rf"experimnt: got an unknown name, .* {ROOT}; did you mean experiment\?",
+    "~foo": f"foo: got an unknown name, expected one of {ROOT}",
+    "trials.x=3": r"trials\.x: got an unknown name, expected trials, which is one value",
+    "hydra.foo=1": r"hydra\.foo: got an unknown name, expected one of .*",
+    "-m planer.x=1 seed=1,2": r"planer: got an unknown name, .*; did you mean planner\?",
+    # No setting at all.
+    "table1": r"table1: got a word alone, expected key=value; did you mean experiment=table1\?",
+    "sedigi": r"sedigi: got a word alone, expected key=value; did you mean \w+=sedighi\?",
+    "outputs": "outputs: got a word alone, expected key=value",
+    "=3": "'=3': got no name, expected key=value",
+    "--foo": "command line: got unrecognized arguments: --foo, expected .*",
+    "--cfg everything": "command line: got argument --cfg/-c: invalid choice: .*",
+    # A choice or a value that cannot be.
+    "planner=null": f"planner: got null, expected {MAPS}",
+    "-m planner=null": f"planner: got null, expected {MAPS}",
+    "planner=3": f"planner: got 3, expected {MAPS}",
+    "planner=[ga1,ga2]": rf"planner: got \[ga1,ga2\], expected {MAPS}",
+    "planner={populaton:3}": r"planner\.populaton: got an unknown name, .* mean population\?",
+    "planner={population:3}": r"planner\.population: got 3, expected .*",
+    "planner=ga1,ga2": "planner: got ga1,ga2, expected one value; gapath -m runs a sweep over .*",
+    "+planner=ga1": r"planner: got \+planner=ga1, expected planner=ga1",
+    "+seed=1": r"seed: got \+seed=1, expected seed=1",
+    "choice=range_1": r"choice: got range_1, expected \+choice=range_1",
+    "map.start=[1": r"map\.start: got \[1, expected a value such as .*",
+    "-m planner=ga1,": "planner: got ga1,, expected a value such as .*",
+    "trials=": "trials: got '', expected a value of type int",
+    "~planner": "planner: got nothing, expected settings, which task=plan uses",
+    "output=${foo}": "output: Interpolation key 'foo' not found",
+    "output=": "output: got '', expected a folder",
+    # What the task does not use.
+    "task=plan navigator=kg18": "navigator: got kg18 with task=plan, expected task=drive, to which "
+    "the group navigator belongs",
+    "task=drive planner.population=3": r"planner\.population: got 3 with task=drive, expected "
+    "task=plan, to which the group planner belongs",
+    # Jobs of one sweep that are one run.
+    "-m threads=1,2": "sweep: got threads=1 and threads=2, which are one run, expected jobs that "
+    "differ in more than output, force, threads, kernels",
+}
+
+
+@pytest.mark.parametrize("line", CASES)
+def test_a_wrong_command_line_is_one_line(gapath, tmp_path, line):
+    code, text, errors = gapath(*line.split(), output=None)
+    assert (code, text) == (2, "")
+    assert re.fullmatch(f"gapath: {CASES[line]}\n", errors), errors
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_version_is_gapaths(gapath):
+    assert gapath("--version") == (0, f"gapath {version('gapath')}\n", "")
+
+
+@pytest.mark.parametrize("name", ["log", "genotype", "report"])
+def test_the_version_of_the_other_commands_is_gapaths(capsys, name):
+    module = "gapath.pipelines.report.cli" if name == "report" else f"gapath.commands.{name}"
+    with pytest.raises(SystemExit) as stop:
+        import_module(module).main(["--version"])
+    assert not stop.value.code
+    assert capsys.readouterr().out == f"gapath-{name} {version('gapath')}\n"
+
+
+def test_a_path_is_where_it_was_typed_also_where_hydra_changes_the_folder(gapath, tmp_path):
+    (tmp_path / "a.map").write_text("type octile\nheight 3\nwidth 5\nmap\n" + ".....\n" * 3)
+    run = ["map=file", "map.path=a.map", "map.start=[0,0]", "map.target=[4,2]", "planner=astar",
+           "recorder=none"]  # fmt: skip
+    drive = ["task=drive", *run[:4], "drive.known_map=a.map", "recorder=none"]
+    for job in (["hydra.run.dir=elsewhere", *run], ["-m", "seed=1,2", *run], drive):
+        code, _, errors = gapath(*job, "hydra.job.chdir=true", "output=mine", output=None)
+        assert (code, errors) == (0, "")
+    folders = [path.parent for path in tmp_path.rglob("manifest.json")]
+    assert len(folders) == 4
+    assert {path.parents[1] for path in folders} == {tmp_path / "mine"}
