@@ -22,7 +22,7 @@ CASES = {
     "task=": "task: got '', expected one of drive, plan",
     "corner_cutting=forbidd": r"corner_cutting: got forbidd, expected one of .*mean forbid\?",
     "planner.kind=grid_serch": r"planner\.kind: got grid_serch, .*; did you mean grid_search\?",
-    "task=drive navigator.explore.base=ga33": rf"planner: got ga33, expected {MAPS}; .* ga3\?",
+    "task=drive navigator.explore.base=ga33": rf"planner: got 'ga33', expected {MAPS}; .* ga3\?",
     # A setting that there is not.
     "planner.populaton=3": r"planner\.populaton: got an unknown name, expected one of kind, "
     r"population, .*; did you mean population\?",

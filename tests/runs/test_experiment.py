@@ -13,6 +13,7 @@ import pytest
 from gapath.commands import log as log_cli
 from gapath.components import build
 from gapath.discovery import yaml_values
+from gapath.errors import InputError
 from gapath.events import TrialFinished
 from gapath.mapio.reconstructed import Reader, generate
 from gapath.planning.shortest_path import shortest_path
@@ -139,7 +140,7 @@ def test_a_full_disk_is_a_failed_run(tmp_path, monkeypatch):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("gapath.recorders.rerun.recording.write_part", full)
-    with pytest.raises(OSError, match="No space"):
+    with pytest.raises(InputError, match="recorder rerun: got No space"):
         execute(run, "test")
     (folder,) = (tmp_path / "test").iterdir()
     status = json.loads((folder / "status.json").read_bytes())
