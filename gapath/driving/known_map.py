@@ -119,7 +119,8 @@ class KnownMap:
     ) -> Looks:
         """Take over what the robot sees on its way along a path, in one call of a kernel.
 
-        It looks before each step, and stops when it sees an obstacle on the path.
+        It looks before each step, and stops at the target, which a path may pass before its end,
+        or when it sees an obstacle on the path.
 
         Parameters
         ----------
@@ -143,8 +144,19 @@ class KnownMap:
         news = np.empty((2, most), dtype=np.int64)
         told = np.empty((2, fields), dtype=np.int64)
         state = (self._table, self.seen)
+        u, v = self._ends[1]
         count = follow(
-            world, *state, path, fields, rule, layers, occlusion, news, told, self._least
+            world,
+            *state,
+            path,
+            fields,
+            v * self.cols + u,
+            rule,
+            layers,
+            occlusion,
+            news,
+            told,
+            self._least,
         )
         headings, ends = told[:, :count].tolist()
         return Looks(headings, ends, news[:, : ends[-1]].copy())  # without the room for more

@@ -173,6 +173,7 @@ def follow(
     seen: NDArray[np.bool_],
     path: NDArray[np.int32],
     fields: int,
+    target: int,
     rule: int,
     layers: int,
     occlusion: bool,
@@ -180,7 +181,7 @@ def follow(
     looks: NDArray[np.int64],
     least: NDArray[np.int64],
 ) -> int:
-    """Go along a path, looking ahead before each step, until an obstacle is seen on it.
+    """Go along a path, looking before each step, to the target or until it is seen to be blocked.
 
     Parameters
     ----------
@@ -190,6 +191,8 @@ def follow(
         Fields as (x, y), the robot's own first.
     fields : int
         Most steps, fewer than n.
+    target : int
+        Number of a field, y * cols + x, from which nobody goes on.
     rule : int
         Corner-cutting rule.
     news : (2, m) int64
@@ -211,5 +214,7 @@ def follow(
         )
         looks[0, i], looks[1, i] = heading, count
         if remaining_cost(known_table, path, i, rule) < 0:
+            return i + 1
+        if path[i + 1, 1] * true_table.shape[1] + path[i + 1, 0] == target:
             return i + 1
     return fields

@@ -130,6 +130,7 @@ def test_remaining_cost(walk, rule, data):
 @given(walks(), st.integers(0, 3), st.integers(1, 4), st.booleans())
 def test_to_follow_a_path_is_to_look_step_by_step(walk, rule, layers, occlusion):
     values, path = walk
+    target = tuple(path[len(path) // 2].tolist())  # somewhere, as where a path passes it
     table = GridMap("random", values).table
     known = np.full(table.shape, OBSTACLE // 2, dtype=np.int32)
     expected, told = known.copy(), []
@@ -140,14 +141,15 @@ def test_to_follow_a_path_is_to_look_step_by_step(walk, rule, layers, occlusion)
         told.append((heading, news))
         for x, y in fields:
             expected[y, x] = table[y, x]
-        if remaining_cost(expected, path, i, rule) < 0:
+        if remaining_cost(expected, path, i, rule) < 0 or (u, v) == target:
             break
 
     steps = len(path) - 1
     news, looks = np.empty((2, table.size), dtype=np.int64), np.empty((2, steps), dtype=np.int64)
     seen, least = np.zeros(table.shape, dtype=np.bool_), np.array([1 << 30])
     sees = (layers, occlusion, news, looks, least)
-    count = follow(table, known, seen, path, steps, rule, *sees)
+    goal = target[1] * table.shape[1] + target[0]
+    count = follow(table, known, seen, path, steps, goal, rule, *sees)
     ends = looks[1, :count].tolist()
     shown = [set(news[0, a:b].tolist()) for a, b in zip([0, *ends], ends, strict=False)]
     assert list(zip(looks[0, :count].tolist(), shown, strict=True)) == told

@@ -3,8 +3,8 @@
 import naive_drive
 import numpy as np
 import pytest
-from drive_strategies import queries, worlds
-from hypothesis import given, settings
+from drive_strategies import queries, random_world, worlds
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from strategies import planner
 
@@ -58,6 +58,8 @@ def told(driven):
     st.sampled_from([0.0, 0.4]),
     st.sampled_from([(1, 1), (2, 3), (1, 4)]),
 )
+# a path passes the target before its end
+@example(random_world(829, CornerCutting.ONE_SIDE), 646, 1, False, 0.0, (1, 1))
 def test_drives_equal_the_slow_twin(problem, seed, reach, occlusion, penalty, interval):
     pilot = navigator(return_penalty=penalty, retreat_interval=list(interval))
     sensor = Sensor(reach, occlusion)
