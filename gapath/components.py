@@ -8,7 +8,7 @@ from typing import Any, cast, get_args, get_origin, get_type_hints
 from omegaconf import OmegaConf
 from omegaconf.errors import ConfigKeyError, OmegaConfBaseException
 
-from gapath.discovery import kinds, load, with_setting, yaml_values
+from gapath.discovery import kinds, load, with_setting, yaml_names, yaml_values
 from gapath.errors import InputError, one_of, require
 
 EXACT = 2**53
@@ -86,9 +86,9 @@ def _kind_and_settings(
     kind = values.pop("kind", None)
     if kind not in kinds(group):
         raise InputError(f"{where}.kind", kind, one_of(kind, kinds(group)))
-    target = load(group, str(kind))
+    target, values = load(group, str(kind)), expanded(values, where)
     try:
-        return str(kind), checked(target, expanded(values), where)
+        return str(kind), checked(target, values, where)
     except InputError as error:
         name = error.where.removeprefix(f"{where}.")
         others = with_setting(group, name)
@@ -98,7 +98,7 @@ def _kind_and_settings(
         raise InputError(error.where, error.value, right) from None
 
 
-def expanded(value: Any) -> Any:
+def expanded(value: Any, where: str) -> Any:
     """Write settings out: planners that stand among them, with all their values.
 
     A planner among settings is a mapping with ``base``, the name of a YAML in
@@ -108,6 +108,8 @@ def expanded(value: Any) -> Any:
     ----------
     value : object
         Nested settings.
+    where : str
+        Where they stand, for messages.
 
     Returns
     -------
@@ -121,11 +123,16 @@ def expanded(value: Any) -> Any:
         If there is no such YAML.
     """
     if isinstance(value, list):
-        return [expanded(item) for item in value]
+        return [expanded(item, f"{where}[{i}]") for i, item in enumerate(value)]
     if not isinstance(value, dict):
         return value
-    own = {key: expanded(item) for key, item in value.items() if key != "base"}
-    return expanded(yaml_values("planner", value["base"])) | own if "base" in value else own
+    own = {key: expanded(item, f"{where}.{key}") for key, item in value.items() if key != "base"}
+    if "base" not in value:
+        return own
+    name, names = value["base"], yaml_names("planner")
+    if name not in names:
+        raise InputError(f"{where}.base", name, one_of(name, names))
+    return expanded(yaml_values("planner", name), where) | own
 
 
 def _for_planners(make: Callable[[str, dict[str, Any], str], Any], value: Any, where: str) -> Any:

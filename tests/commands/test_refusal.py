@@ -22,7 +22,8 @@ CASES = {
     "task=": "task: got '', expected one of drive, plan",
     "corner_cutting=forbidd": r"corner_cutting: got forbidd, expected one of .*mean forbid\?",
     "planner.kind=grid_serch": r"planner\.kind: got grid_serch, .*; did you mean grid_search\?",
-    "task=drive navigator.explore.base=ga33": rf"planner: got 'ga33', expected {MAPS}; .* ga3\?",
+    "task=drive navigator.explore.base=ga33": rf"navigator.explore.base: got ga33, "
+    rf"expected {MAPS}; .* ga3\?",
     # A setting that there is not.
     "planner.populaton=3": r"planner\.populaton: got an unknown name, expected one of kind, "
     r"population, .*; did you mean population\?",
@@ -52,11 +53,11 @@ CASES = {
     "+planner=ga1": r"planner: got \+planner=ga1, expected planner=ga1",
     "+seed=1": r"seed: got \+seed=1, expected seed=1",
     "choice=range_1": r"choice: got range_1, expected \+choice=range_1",
-    "map.start=[1": r"map\.start: got \[1, expected a value such as .*",
-    "-m planner=ga1,": "planner: got ga1,, expected a value such as .*",
+    "map.start=[1": r"map\.start: got \[1, expected a whole list \[x, y\], .*",
+    "-m planner=ga1,": "planner: got ga1,, expected quotes around what is no plain word, .*",
     "trials=": "trials: got '', expected a value of type int",
     "~planner": "planner: got nothing, expected settings, which task=plan uses",
-    "output=${foo}": "output: Interpolation key 'foo' not found",
+    "output=${foo}": "output: got Interpolation key 'foo' not found, expected .*",
     "output=": "output: got '', expected a folder",
     # What the task does not use.
     "task=plan navigator=kg18": "navigator: got kg18 with task=plan, expected task=drive, to which "

@@ -140,13 +140,13 @@ def make_drives(grid: GridMap, navigator: str, experiment: str, n: int) -> pd.Da
 
 
 def plan_settings(preset: str, changes: Mapping[str, Any] = NOTHING) -> dict[str, Any]:
-    values = flatten({"planner": expanded(yaml_values("planner", preset))})
+    values = flatten({"planner": expanded(yaml_values("planner", preset), "planner")})
     return {"task": "plan", **values, **changes}
 
 
 def drive_settings(preset: str, changes: Mapping[str, Any] = NOTHING) -> dict[str, Any]:
     plain = yaml.safe_load((files("gapath.conf") / "config.yaml").read_text("utf-8"))
-    own = {"task": "drive", "navigator": expanded(yaml_values("navigator", preset))}
+    own = {"task": "drive", "navigator": expanded(yaml_values("navigator", preset), "navigator")}
     return {**flatten(own | {"drive": plain["drive"]}), **changes}
 
 
