@@ -67,7 +67,7 @@ def make_drive_run(map_name: str, navigator: str, trials: int) -> Run:
     plain = yaml.safe_load(Path(conf_folder(), "config.yaml").read_text("utf-8"))
     values = yaml_values("navigator", navigator)
     given = {group: plain.get(group, values) for group in DriveTask.groups}
-    settings = flatten({"task": DriveTask.name, **expanded(given)})
+    settings = flatten({"task": DriveTask.name, **expanded(given, "")})
     method, task = Method(navigator), DriveTask.make(given)
     return Run("drives", method, make_problem(map_name), task, [], 0, trials, settings, "", False)
 
