@@ -52,12 +52,12 @@ class SweepCheck(Callback):  # type: ignore[misc]
         """
         from hydra._internal.core_plugins.basic_sweeper import BasicSweeper
 
-        params: Any = OmegaConf.to_container(config.hydra.sweeper.params or DictConfig({}))
-        given = [f"{key}={value}" for key, value in params.items()]
-        words = every = [*given, *typed(config.hydra)]
+        words = typed(config.hydra)
         loader = GlobalHydra.instance().config_loader()
         folders: dict[Path, list[str]] = {}
         try:
+            params = config.hydra.sweeper.params or {}  # items() resolves them, as the sweeper does
+            words = every = [*(f"{key}={value}" for key, value in params.items()), *words]
             parser = OverridesParser.create(config_loader=loader)
             for words in BasicSweeper.split_arguments(parser.parse_overrides(every), None)[0]:
                 config = compose("config", overrides=words, return_hydra_config=True)
