@@ -162,7 +162,7 @@ def test_an_interrupted_run_says_so(gapath, tmp_path, monkeypatch):
             ["map=file", "map.path=büro.map"],
             """quotes around what is no plain word, 'map.path="büro.map"'""",
         ),
-        (["colour"], "colour: got no value, expected NAME=VALUE"),
+        (["colour"], "colour: got a word alone, expected key=value"),
         (["map.start=[0,0"], "map.start: got [0,0, expected a whole list [x, y]"),
         (["map=image", 'map.path="plan'], "or quoted text"),
         (["map=image", "map.path=plan (2).png"], """'map.path="plan (2).png"'"""),

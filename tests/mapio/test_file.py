@@ -56,7 +56,7 @@ def test_unknown_suffix(name):
     with pytest.raises(InputError) as caught:
         read(name)
     message = str(caught.value)
-    assert message.startswith(f"map.path: got {name}, expected a file name ending in ")
+    assert message.startswith(f"map.path: got {name or "''"}, expected a file name ending in ")
     assert all(suffix in message for suffix in (".map", ".png", ".yaml", ".yml"))
 
 

@@ -190,7 +190,7 @@ def test_an_unreachable_target_is_infeasible_without_any_generation():
     problem = Problem(map_of(picture), (2, 2), (55, 30))
     plan = ga().plan(problem, rng.stream(0))
     assert plan.status is PlanStatus.INFEASIBLE
-    assert plan.epochs == plan.evaluations == 0 and plan.trace is None
+    assert plan.epochs == plan.evaluations == 0 and plan.evolution is None
     assert [*plan.stages] == ["dilation", "keypoints", "graph"]
     assert len(plan.survey().points) >= 2
 

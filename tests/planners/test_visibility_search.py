@@ -31,7 +31,7 @@ def keeps_its_distance(problem, plan, growth):
 
 def keeps_to_its_lines(plan):
     """The path is that of its lines; only one through blocks of a small picture has none."""
-    if plan.lines is None:
+    if not len(plan.lines()):
         return plan.survey().block > 1
     lines = [tuple(point) for point in plan.lines().tolist()]
     return plan.path.tolist() == [list(field) for field in naive.polyline(lines)]
@@ -119,7 +119,7 @@ def test_paths_are_shortest_and_keep_their_distance(problem, radius, resize, key
     shortest = twin.shortest(lengths)
     if shortest is None:
         assert plan.status is PlanStatus.INFEASIBLE
-        assert not len(plan.path) and plan.lines is None
+        assert not len(plan.path) and not len(plan.lines())
         return
     assert flaw(problem, plan.path, plan.cost) is None
     assert not grown[plan.path[:, 1], plan.path[:, 0]].any()

@@ -247,7 +247,7 @@ def test_files_are_parts_until_closed(tmp_path):
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full on this system")
 def test_a_full_disk_is_an_error(tmp_path):
     (tmp_path / "trial-0.rrd.part").symlink_to("/dev/full")
-    with pytest.raises(OSError, match="No space left"):
+    with pytest.raises(InputError, match="No space left"):
         record(tmp_path, run_of([evolution(1, 2)]))
 
 
