@@ -177,7 +177,8 @@ def typed(target: type[Any], values: object, where: str) -> Any:
 def checked(target: type[Any], values: object, where: str) -> dict[str, Any]:
     """Give what `typed` would make a dataclass of: every field, with its type, as plain data.
 
-    A whole number is an int where the field is, and a float where that is one: 1.0 and "1" are 1.
+    A whole number is an int where the field is, and a float where that is one: 1.0 and "1" are 1,
+    -0.0 is 0.0.
     """
     prefix = f"{where}." if where else ""
     names = [f.name for f in dataclasses.fields(target) if f.init]
@@ -206,9 +207,18 @@ def checked(target: type[Any], values: object, where: str) -> dict[str, Any]:
         raise InputError(prefix + name, shown, _type_name(target, name)) from error
     assert isinstance(fields, dict)
     return {
-        name: checked(hints[name], fields[name], prefix + name) if name in inner else fields[name]
+        name: checked(hints[name], fields[name], prefix + name)
+        if name in inner
+        else _without_sign_of_zero(fields[name])
         for name in names
     }
+
+
+def _without_sign_of_zero(value: Any) -> Any:
+    """Give 0.0 for -0.0, also in lists: they are equal, but are not written alike."""
+    if isinstance(value, list):
+        return [_without_sign_of_zero(item) for item in value]
+    return 0.0 if isinstance(value, float) and value == 0 else value
 
 
 def _whole(hint: Any, value: Any) -> Any:

@@ -131,6 +131,24 @@ class Checks:
         """
         require(good, f"{self.group}.{name}", getattr(self.settings, name), expected)
 
+    def whole(self, name: str, least: int, most: int) -> None:
+        """Raise `InputError` unless a setting is within a range, both ends included.
+
+        Parameters
+        ----------
+        name : str
+            The setting, an integer.
+        least, most : int
+            The ends of its range.
+
+        Raises
+        ------
+        InputError
+            If it is outside; names the setting, its value and both ends.
+        """
+        good = least <= getattr(self.settings, name) <= most
+        self(name, good, f"an integer from {least} to {most}")
+
 
 def require_memory(needed: int, where: str, value: str) -> None:
     """Raise `InputError` if settings need more than `MOST_MEMORY`.

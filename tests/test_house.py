@@ -51,6 +51,17 @@ def crowded(root):
     ]
 
 
+def ranges_with_one_end(root):
+    """Texts that say what would be right with a least integer, but no most."""
+    one = re.compile(r"\bintegers? (from \d+ on|>=? ?\d)|\bnumbers? from \d+ on|^at least \d+$")
+    for path, text in modules(root, "gapath", "pipelines"):
+        for node in ast.walk(ast.parse(text)):
+            if isinstance(node, ast.Call):
+                for given in node.args:
+                    if isinstance(given, ast.Constant) and one.search(str(given.value)):
+                        yield f"{path}: {given.value}"
+
+
 def long_files(root):
     return [
         f"{path}: {lines} lines"
@@ -153,6 +164,10 @@ def taken_apart(root):
             split = isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)
             if split and any(isinstance(a, ast.Constant) and a.value == "[" for a in node.args):
                 yield f"{path}:{node.lineno}"
+
+
+def test_ranges_in_messages_have_both_ends():
+    assert not [*ranges_with_one_end(ROOT)]
 
 
 def test_no_code_takes_a_name_apart():

@@ -44,7 +44,7 @@ class Sensor:
 
     def __post_init__(self) -> None:
         check = Checks(self, "drive.sensor")
-        check("range", 1 <= self.range <= 1000, "an integer from 1 to 1000")
+        check.whole("range", 1, 1000)
 
 
 class Frame(NamedTuple):

@@ -34,9 +34,9 @@ class Changes:
 
     def __post_init__(self) -> None:
         check = Checks(self, "drive.changes")
-        check("every", self.every >= 0, "an integer from 0 on")
-        check("lifetime", self.lifetime >= 1, "an integer from 1 on")
-        check("side", 1 <= self.side <= 1000, "an integer from 1 to 1000")
+        check.whole("every", 0, 10**6)
+        check.whole("lifetime", 1, 10**6)
+        check.whole("side", 1, 1000)
 
 
 class World:

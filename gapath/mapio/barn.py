@@ -71,7 +71,7 @@ class Reader:
     def __post_init__(self) -> None:
         check = Checks(self, "map")
         check("free_weight", 0 <= self.free_weight < 1, "a number in [0, 1)")
-        check("inflation", 0 <= self.inflation <= COLS, f"an integer, 0 to {COLS}")
+        check.whole("inflation", 0, COLS)
 
     def read(self) -> GridMap:
         """Read the map.

@@ -119,7 +119,7 @@ class Reader:
 
     def __post_init__(self) -> None:
         check = Checks(self, "map")
-        check("problem", self.problem >= 0, "an integer >= 0")
+        check.whole("problem", 0, 10**6)
         check("free_weight", 0 <= self.free_weight < 1, "a number in [0, 1)")
 
     def read(self) -> GridMap:

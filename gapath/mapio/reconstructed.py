@@ -72,7 +72,7 @@ class Reader:
     def __post_init__(self) -> None:
         check, names = Checks(self, "map"), [*CLASSES, *UNKNOWN_CLASSES]
         check("map_class", self.map_class in names, f"one of {names}")
-        check("instance", 0 <= self.instance < 2**32, "an integer from 0 on")
+        check.whole("instance", 0, 2**32 - 1)
 
     def read(self) -> GridMap:
         """Give the map.

@@ -174,10 +174,10 @@ class Reader:
 
     def __post_init__(self) -> None:
         check = Checks(self, "map")
-        check("number", 1 <= self.number < 2**32, "an integer from 1 on")
-        check("obstacles", 1 <= self.obstacles <= 1000, "an integer from 1 to 1000")
+        check.whole("number", 1, 2**32 - 1)
+        check.whole("obstacles", 1, 1000)
         for name in ("width", "height"):
-            check(name, 100 <= getattr(self, name) <= 8192, "an integer from 100 to 8192")
+            check.whole(name, 100, 8192)
 
     def read(self) -> GridMap:
         """Give the scene.

@@ -77,10 +77,10 @@ class Navigator:
 
     def __post_init__(self) -> None:
         check = Checks(self, "navigator")
-        check("explore_interval", self.explore_interval >= 1, "an integer from 1 on")
+        check.whole("explore_interval", 1, 10**6)
         interval = self.retreat_interval
-        good = len(interval) == 2 and 1 <= interval[0] <= interval[1]
-        check("retreat_interval", good, "[least, most] with 1 <= least <= most")
+        good = len(interval) == 2 and 1 <= interval[0] <= interval[1] <= 10**6
+        check("retreat_interval", good, "[least, most] with 1 <= least <= most <= 1000000")
         check("return_penalty", 0 <= self.return_penalty <= 1000, "a number in [0, 1000]")
         check("replan", len(self.replan) > 0, "at least one planner")
         named = {"retreat": self.retreat, "explore": self.explore}

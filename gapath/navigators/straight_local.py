@@ -90,7 +90,7 @@ class Navigator:
         if isinstance(self.planner, Particular):
             largest = Subsection(np.broadcast_to(np.int32(0), 2 * (max(sides),)), (0, 0), 1.0)
             self.planner.check(Around(largest, (0, 0), (0, 0), CornerCutting.ALLOW))
-        check("retreat_interval", self.retreat_interval >= 1, "an integer from 1 on")
+        check.whole("retreat_interval", 1, 10**6)
 
     def begin(self, query: Situation) -> Track:
         """Begin without a path."""

@@ -97,20 +97,20 @@ class Planner:
 
     def __post_init__(self) -> None:
         check = Checks(self, "planner")
-        check("population", 4 <= self.population <= 10**6, "an integer from 4 to 1000000")
-        check("control_points", 3 <= self.control_points <= 32, "an integer from 3 to 32")
-        check("max_epochs", 1 <= self.max_epochs <= 10**6, "an integer from 1 to 1000000")
+        check.whole("population", 4, 10**6)
+        check.whole("control_points", 3, 32)
+        check.whole("max_epochs", 1, 10**6)
         check(
             "min_epochs",
             1 <= self.min_epochs <= self.max_epochs,
             f"an integer from 1 to max_epochs, {self.max_epochs}",
         )
-        check("way_points", 2 <= self.way_points <= 64, "an integer from 2 to 64")
+        check.whole("way_points", 2, 64)
         check("sampling", self.sampling in ("curve", "span"), '"curve" or "span"')
         for name in ("mixing", "mutation_probability", "line_jitter_probability"):
             check(name, 0 <= getattr(self, name) <= 1, "a number in [0, 1]")
         for name in ("line_jitter", "neighbourhood", "margin"):
-            check(name, 0 <= getattr(self, name) <= 65536, "an integer from 0 to 65536")
+            check.whole(name, 0, 65536)
         check("vln", 1 <= self.vln < float("inf"), "a finite number above every weight")
         genes, points = 2 * self.control_points, len(self.basis.rounding)
         needed = 4 * genes * (2 * self.population + self.max_epochs)

@@ -68,12 +68,12 @@ class Planner:
 
     def __post_init__(self) -> None:
         check = Checks(self, "planner")
-        check("switches", 0 <= self.switches <= 2, "an integer from 0 to 2")
+        check.whole("switches", 0, 2)
         check(
             "switches", not self.switches or self.column_wise, "0, as planner.column_wise is false"
         )
-        check("population", 2 <= self.population <= 65535, "an integer from 2 to 65535")
-        check("max_epochs", 1 <= self.max_epochs <= 10**6, "an integer from 1 to 1000000")
+        check.whole("population", 2, 65535)
+        check.whole("max_epochs", 1, 10**6)
         for name in ("crossover_probability", "mutation_probability"):
             check(name, 0 <= getattr(self, name) <= 1, "a number in [0, 1]")
         for name in ("length_weight", "turns_weight"):

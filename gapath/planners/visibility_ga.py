@@ -77,8 +77,8 @@ class Planner(Surveyor):
         else:
             good = 1 <= self.genes <= 1000
         check("genes", good, '"obstacles", "obstacles_and_ends" or an integer from 1 to 1000')
-        check("population", 4 <= self.population <= 65535, "an integer from 4 to 65535")
-        check("max_epochs", 1 <= self.max_epochs <= 10**6, "an integer from 1 to 1000000")
+        check.whole("population", 4, 65535)
+        check.whole("max_epochs", 1, 10**6)
         check(
             "max_stagnation",
             self.max_stagnation is None or 1 <= self.max_stagnation <= 10**6,

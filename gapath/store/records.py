@@ -3,18 +3,19 @@
 import contextlib
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from enum import StrEnum
 from functools import cached_property
 from pathlib import Path
-from typing import Any, get_type_hints
+from typing import Any
 
 from gapath.discovery import kinds
 from gapath.errors import InputError, require
 from gapath.events import Settings
 from gapath.store.runfolder import LOCK, RunFolder, is_locked
 from gapath.store.settings import Value, read_settings
+from gapath.store.shape import shaped
 
 STATUS, MANIFEST, CONFIG, TRIALS = "status.json", "manifest.json", "config.yaml", "trials.parquet"
 """Names of the files that every run folder has."""
@@ -125,29 +126,19 @@ class Manifest:
         Raises
         ------
         InputError
-            If it cannot be read, or something is missing or of another type.
+            If it cannot be read, or something is missing, of another type or out of range.
         """
-        content = _load(folder / MANIFEST)
-        hints = get_type_hints(cls)
-        for each in fields(cls):
-            kind = hints[each.name] if hints[each.name] in (str, int) else dict
-            value = content.get(each.name)
-            require(type(value) is kind, f"{MANIFEST}, {each.name}", value, kind.__name__)
-        known = kinds("task")
-        task = content["task"]
+        found: Manifest = shaped(cls, _load(folder / MANIFEST), MANIFEST)
+        known, task, trials, seed = kinds("task"), found.task, found.trials, found.seed
         require(task in known, f"{MANIFEST}, task", task, f"one of {', '.join(known)}")
-        files = {name: _file_entry(name, entry) for name, entry in content["files"].items()}
-        require(TRIALS in files, f"{MANIFEST}, files", sorted(files), TRIALS)
-        return cls(**{each.name: content[each.name] for each in fields(cls)} | {"files": files})
-
-
-def _file_entry(name: str, entry: Any) -> FileEntry:
-    where = f"{MANIFEST}, files"
-    require(Path(name).name == name, where, name, "a name within the folder")
-    good = isinstance(entry, dict) and entry.keys() == {"sha256", "bytes"}
-    good = good and isinstance(entry["sha256"], str) and isinstance(entry["bytes"], int)
-    require(good, f"{where}, {name}", entry, "sha256 and bytes")
-    return FileEntry(**entry)
+        good = 1 <= trials <= 10**6
+        require(good, f"{MANIFEST}, trials", trials, "an integer from 1 to 10^6")
+        require(0 <= seed < 2**64, f"{MANIFEST}, seed", seed, "an integer in [0, 2^64)")
+        where = f"{MANIFEST}, files"
+        for name in found.files:
+            require(Path(name).name == name, where, name, "a name within the folder")
+        require(TRIALS in found.files, where, sorted(found.files), TRIALS)
+        return found
 
 
 @dataclass(frozen=True)

@@ -51,7 +51,7 @@ class Clearance:
 
     def __post_init__(self) -> None:
         check = Checks(self, "planner")
-        check("robot_radius", 0 <= self.robot_radius < math.inf, "a number from 0 on")
+        check("robot_radius", 0 <= self.robot_radius <= 10**6, "a number from 0 to 1000000")
         check("radius_unit", self.radius_unit in ("pixels", "metres"), '"pixels" or "metres"')
         check("radius_tolerance", 0 <= self.radius_tolerance <= 10, "a number from 0 to 10")
         check("element", self.element in ("reach", "width"), '"reach" or "width"')

@@ -105,8 +105,8 @@ def _wanted(
     if module.EXPERIMENT == ALL:
         return trials
     if module.EXPERIMENT is None:
-        wanted = {other.EXPERIMENT for other in modules if task == other.TASK}
-        return trials[~trials["experiment"].isin(wanted)]
+        wanted = {other.EXPERIMENT for other in modules if other.TASK in (ALL, task)}
+        return trials[~trials["experiment"].isin(wanted - {None, ALL})]
     return trials[trials["experiment"] == module.EXPERIMENT]
 
 

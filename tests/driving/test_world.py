@@ -70,8 +70,15 @@ def test_other_trials_have_other_squares():
 
 @pytest.mark.parametrize(
     ("values", "field"),
-    [((-1, 1, 1), "every"), ((1, 0, 1), "lifetime"), ((1, 1, 0), "side"), ((1, 1, 1001), "side")],
+    [
+        ((-1, 1, 1), "every: got -1, expected an integer from 0 to 1000000"),
+        ((10**6 + 1, 1, 1), "every: got 1000001, expected an integer from 0 to 1000000"),
+        ((1, 0, 1), "lifetime: got 0, expected an integer from 1 to 1000000"),
+        ((1, 10**6 + 1, 1), "lifetime: got 1000001, expected an integer from 1 to 1000000"),
+        ((1, 1, 0), "side"),
+        ((1, 1, 1001), "side"),
+    ],
 )
 def test_bad_changes(values, field):
-    with pytest.raises(InputError, match=f"changes.{field}"):
+    with pytest.raises(InputError, match=f"^drive.changes.{field}"):
         Changes(*values)

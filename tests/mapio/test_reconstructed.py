@@ -108,7 +108,11 @@ def test_the_canonical_map_is_as_hard_as_the_papers(name, setting):
 
 @pytest.mark.parametrize(
     ("values", "message"),
-    [(("kg18_test9", 0), "map.map_class"), (("kg18_test1", -1), "map.instance")],
+    [
+        (("kg18_test9", 0), "map.map_class"),
+        (("kg18_test1", -1), "map.instance: got -1, expected an integer from 0 to 4294967295"),
+        (("kg18_test1", 2**32), "map.instance: got 4294967296, expected an integer from 0 to "),
+    ],
 )
 def test_unknown_classes_and_instances_are_refused(values, message):
     with pytest.raises(InputError, match=message):

@@ -105,7 +105,9 @@ def test_a_drive_into_a_blind_alley_comes_back_out():
 @pytest.mark.parametrize(
     ("values", "where"),
     [
-        ({"explore_interval": 0}, "explore_interval"),
+        ({"explore_interval": 0}, "explore_interval: got 0, expected an integer from 1 to 1000000"),
+        ({"explore_interval": 10**6 + 1}, "explore_interval: got 1000001"),
+        ({"retreat_interval": [1, 10**6 + 1]}, "retreat_interval: .* <= most <= 1000000"),
         ({"retreat_interval": [3, 2]}, "retreat_interval"),
         ({"retreat_interval": [0, 2]}, "retreat_interval"),
         ({"retreat_interval": [2]}, "retreat_interval"),

@@ -115,6 +115,7 @@ def test_it_turns_round_once_and_goes_home_without_news():
         ("subsections", [1]),
         ("subsections", [10, 701]),
         ("retreat_interval", 0),
+        ("retreat_interval", 10**6 + 1),
         ("planner", 3),
     ],
 )

@@ -221,9 +221,10 @@ def test_what_could_not_be_read_is_not_written(name, limit, found, tmp_path, mon
         write(example(trials=99), tmp_path)
 
 
-@pytest.mark.parametrize("flush_every", [0, -5])
+@pytest.mark.parametrize("flush_every", [0, -5, 10**6 + 1])
 def test_flush_every_is_checked(flush_every):
-    with pytest.raises(InputError, match=r"recorder\.mcap\.flush_every"):
+    expected = rf"^recorder\.mcap\.flush_every: got {flush_every}, .* from 1 to 1000000$"
+    with pytest.raises(InputError, match=expected):
         mcap.Recorder(flush_every=flush_every)
 
 

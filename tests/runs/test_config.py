@@ -38,11 +38,21 @@ def run_of(*overrides):
         (["task=drive", "navigator=sedighi"],
          ["task=drive", "navigator=sedighi", "navigator.planner.max_epochs='100'"]),
         (["planner=inflated_ga3"], ["planner=inflated_ga3", "planner.robot_radius=5.0"]),
+        (["planner=visibility_ga", "planner.radius_tolerance=0"],
+         ["planner=visibility_ga", "planner.radius_tolerance=-0.0"]),
+        (["planner=visibility_ga", "planner.radius_tolerance=0"],
+         ["planner=visibility_ga", "planner.radius_tolerance='-0'"]),
+        (["map=movingai", "map.path=m.map", "map.free_weight=0", "map.start=[0,0]",
+          "map.target=[1,1]"],
+         ["map=movingai", "map.path=m.map", "map.free_weight=-0.0", "map.start=[-0.0,0]",
+          "map.target=[1,1]"]),
+        (["task=drive"], ["task=drive", "navigator.return_penalty=-0.0"]),
     ],
 )  # fmt: skip
 def test_one_value_has_one_key(first, second, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "m.png").write_bytes(grey())
+    (tmp_path / "m.map").write_text("type octile\nheight 2\nwidth 2\nmap\n..\n..\n")
     one, other = run_of(*first), run_of(*second)
     assert text_of(one.settings) == text_of(other.settings)
     assert one.method == other.method

@@ -221,10 +221,11 @@ def test_where_the_robot_fits_nowhere_that_is_said():
 @pytest.mark.parametrize(
     ("field", "value", "expected"),
     [
-        ("robot_radius", -1, "a number from 0 on"),
-        ("robot_radius", -1e-9, "a number from 0 on"),
-        ("robot_radius", float("inf"), "a number from 0 on"),
-        ("robot_radius", float("nan"), "a number from 0 on"),
+        ("robot_radius", -1, "a number from 0 to 1000000"),
+        ("robot_radius", -1e-9, "a number from 0 to 1000000"),
+        ("robot_radius", 1000000.5, "a number from 0 to 1000000"),
+        ("robot_radius", float("inf"), "a number from 0 to 1000000"),
+        ("robot_radius", float("nan"), "a number from 0 to 1000000"),
         ("radius_unit", "feet", '"pixels" or "metres"'),
         ("radius_tolerance", -0.1, "a number from 0 to 10"),
         ("radius_tolerance", 10.5, "a number from 0 to 10"),

@@ -210,7 +210,7 @@ def test_lines_have_a_length():
         ("corner_tolerance", -1, "a number of pixels in (0, 100]"),
         ("corner_tolerance", 100.5, "a number of pixels in (0, 100]"),
         ("corner_tolerance", float("nan"), "a number of pixels in (0, 100]"),
-        ("robot_radius", -1, "a number from 0 on"),
+        ("robot_radius", -1, "a number from 0 to 1000000"),
         ("element", "disc", '"reach" or "width"'),
     ],
 )

@@ -12,7 +12,7 @@ from typing import IO, Any
 
 from mcap.writer import Writer
 
-from gapath.errors import InputError, require
+from gapath.errors import Checks, InputError, require
 from gapath.events import Event, RunStarted
 from gapath.recorders.mcap import description
 from gapath.recorders.mcap.format import (
@@ -47,7 +47,7 @@ class Recorder:
     Raises
     ------
     InputError
-        If it is below 1.
+        If it is not from 1 to 1000000.
     """
 
     records = True
@@ -63,7 +63,7 @@ class Recorder:
     _bytes: int = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        require(self.flush_every >= 1, "recorder.mcap.flush_every", self.flush_every, "at least 1")
+        Checks(self, "recorder.mcap").whole("flush_every", 1, 10**6)
 
     def check(self, trials: int) -> None:
         """Accept every run; its size is bounded while it is written."""

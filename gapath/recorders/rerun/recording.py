@@ -27,7 +27,7 @@ class Recorder:
     Raises
     ------
     InputError
-        If a number is not a whole one from 0 on; from `record`, if the run has no such
+        If a number is not a whole one from 0 to 999999; from `record`, if the run has no such
         trial.
     """
 
@@ -42,9 +42,10 @@ class Recorder:
 
     def __post_init__(self) -> None:
         good = isinstance(self.trials, list) and all(
-            type(trial) is int and trial >= 0 for trial in self.trials
+            type(trial) is int and 0 <= trial < 10**6 for trial in self.trials
         )
-        require(good, "recorder.rerun.trials", self.trials, "a list of trial numbers from 0 on")
+        expected = "a list of trial numbers from 0 to 999999"
+        require(good, "recorder.rerun.trials", self.trials, expected)
 
     def check(self, trials: int) -> None:
         """Raise InputError if a chosen trial is not one of a run's."""

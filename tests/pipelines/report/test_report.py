@@ -2,10 +2,12 @@ import json
 import re
 from html.parser import HTMLParser
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
-from gapath.pipelines.page.section import find_sections
+from gapath.pipelines.page.section import ALL, Section, find_sections
+from gapath.pipelines.report import report as report_module
 from gapath.pipelines.report.cli import main
 from gapath.pipelines.report.report import make_report
 
@@ -121,6 +123,32 @@ def test_only_what_was_run_is_shown(tmp_path, make_run):
     assert "Other trials" in page
     assert "Convergence" not in page
     assert "KG18 Table 1" not in page
+
+
+@pytest.mark.parametrize(("task", "others"), [("plan", 1), (ALL, 1), ("drive", 2)])
+def test_what_a_section_wants_is_not_shown_as_other_trials(
+    task, others, tmp_path, make_run, monkeypatch
+):
+    """Nor where that section is asked for every task; one of another task's wants none of these."""
+    seen = {}
+
+    def section(trials, runs, name):
+        seen[name] = sorted(set(trials["experiment"]))
+        return Section(name)
+
+    mine, rest = (
+        SimpleNamespace(
+            __name__=name, TASK=of, EXPERIMENT=experiment, ORDER=0,
+            section=lambda trials, runs, name=name: section(trials, runs, name),
+        )
+        for name, of, experiment in (("mine", task, "mine"), ("rest", "plan", None))
+    )  # fmt: skip
+    monkeypatch.setattr(report_module, "find_sections", lambda: [mine, rest])
+    for experiment in ("mine", "plan"):
+        make_run(tmp_path, experiment, "kg18_test1", "ga3", n=1, log=False)
+    make_report(tmp_path, tmp_path / "report")
+    assert seen["rest"] == ["mine", "plan"][-others:]
+    assert seen.get("mine", ["mine"]) == ["mine"]
 
 
 def test_a_folder_that_was_renamed_is_still_read(tmp_path, make_run):
