@@ -275,7 +275,7 @@ def yaml_values(group: str, name: str) -> dict[str, Any]:
     candidates = [files(package) / group / f"{name}.yaml" for package in conf_packages()]
     file = next((path for path in candidates if path.is_file()), None)
     if file is None:
-        raise InputError(group, repr(name), one_of(name, yaml_names(group)))
+        raise InputError(group, name, one_of(name, yaml_names(group)))
     own: dict[str, Any] = yaml.safe_load(file.read_text("utf-8"))
     bases = [base for base in own.pop("defaults", []) if base != "_self_"]
     values: dict[str, Any] = {}

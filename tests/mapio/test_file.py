@@ -55,8 +55,8 @@ def test_the_reader_is_found_by_the_suffix(tmp_path):
 def test_unknown_suffix(name):
     with pytest.raises(InputError) as caught:
         read(name)
-    message = str(caught.value)
-    assert message.startswith(f"map.path: got {name or "''"}, expected a file name ending in ")
+    message, shown = str(caught.value), name or "''"
+    assert message.startswith(f"map.path: got {shown}, expected a file name ending in ")
     assert all(suffix in message for suffix in (".map", ".png", ".yaml", ".yml"))
 
 
