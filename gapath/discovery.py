@@ -10,6 +10,7 @@ import importlib
 import importlib.util
 import pkgutil
 import traceback
+from dataclasses import is_dataclass
 from functools import lru_cache
 from importlib import metadata
 from importlib.resources import files
@@ -19,7 +20,7 @@ from typing import Any
 
 import yaml
 
-from gapath.errors import InputError, one_of, require
+from gapath.errors import InputError, one_of, require, require_all
 
 PACKAGES = {
     "map": "gapath.mapio",
@@ -32,13 +33,14 @@ PACKAGES = {
 """What is found -> the package that holds a module for each kind of it."""
 
 OFFERS = {
-    "map": "Reader",
-    "planner": "Planner",
-    "navigator": "Navigator",
-    "recorder": "Recorder",
-    "task": "Task",
-}
-"""The class that such a module offers; a metric is a module by itself."""
+    "map": ("Reader", "read"),
+    "planner": ("Planner", "exact minimises plan"),
+    "navigator": ("Navigator", "complete begin step"),
+    "recorder": ("Recorder", "records check open record close abort"),
+    "task": ("Task", "name groups shapes row success threaded events make read told_optimum check"
+                     " optimum trials summary line"),
+}  # fmt: skip
+"""The class that such a module offers, and what that must have; a metric is a module by itself."""
 
 
 @lru_cache
@@ -121,7 +123,7 @@ def load(group: str, kind: str) -> Any:
     Raises
     ------
     InputError
-        If an installed package's module cannot be imported or does not offer it.
+        If an installed package's module cannot be imported or does not offer it whole.
     """
     other = entry_points(PACKAGES[group]).get(kind)
     if other is None:
@@ -130,8 +132,12 @@ def load(group: str, kind: str) -> Any:
         module = imported(other)
     if group not in OFFERS:
         return module
-    offered = getattr(module, OFFERS[group], None)
-    require(offered is not None, module.__name__, "a module without it", f"a {OFFERS[group]}")
+    name, needed = OFFERS[group]
+    require_all(module, module.__name__, {name: type})
+    offered, where = getattr(module, name), f"{module.__name__}.{name}"
+    require_all(offered, where, dict.fromkeys(needed.split(), object))
+    good = group == "task" or is_dataclass(offered)
+    require(good, where, "a class that is none", "a dataclass of its settings")
     return offered
 
 
@@ -160,9 +166,9 @@ def imported(entry: metadata.EntryPoint) -> ModuleType:
     """
     try:
         return importlib.import_module(entry.value)
-    except ImportError as error:
+    except Exception as error:  # what it does when imported is its own
         where = f"entry point {entry.group}: {entry.name} = {entry.value}"
-        raise InputError(where, error, "a module that can be imported") from error
+        raise InputError(where, repr(error), "a module that can be imported") from error
 
 
 @lru_cache

@@ -1,6 +1,7 @@
 """Bad input: the one exception that says so, and the checks that raise it."""
 
 from collections.abc import Iterable, Mapping
+from typing import Any
 
 MOST_MEMORY = 1 << 30
 """Bytes that a planner's settings may ask for."""
@@ -51,6 +52,31 @@ def require(condition: bool, where: object, value: object, expected: str) -> Non
     """
     if not condition:
         raise InputError(where, value, expected)
+
+
+def require_all(home: object, where: str, needed: Mapping[str, Any]) -> None:
+    """Raise `InputError` if a module or class of an installed package lacks something.
+
+    Parameters
+    ----------
+    home : module or type
+        What must have it.
+    where : str
+        Its name.
+    needed : mapping of str to type
+        Each name, and what stands there: anything that `isinstance` takes.
+
+    Raises
+    ------
+    InputError
+        If a name is missing or something else stands there.
+    """
+    for name, kind in needed.items():
+        if name in getattr(home, "__dataclass_fields__", ()):  # its objects have it
+            continue
+        require(hasattr(home, name), where, f"no {name}", f"one with {', '.join(needed)}")
+        value, right = getattr(home, name), getattr(kind, "__name__", str(kind))
+        require(isinstance(value, kind), f"{where}.{name}", value, right)
 
 
 def one_of(given: object, names: Iterable[str]) -> str:

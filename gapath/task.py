@@ -15,12 +15,11 @@ from typing import (
     Protocol,
     Self,
     get_args,
-    get_type_hints,
     runtime_checkable,
 )
 
 from gapath.discovery import kinds, load
-from gapath.errors import InputError, one_of, require
+from gapath.errors import InputError, one_of, require, require_all
 from gapath.events import Event, Finished, RunStarted, TrialStarted
 from gapath.grid import GridMap
 from gapath.planning.path import octile_length
@@ -121,11 +120,12 @@ def metrics() -> dict[str, Measure]:
     """Find all metrics: name -> how to measure."""
     found: dict[str, Measure] = {}
     for name in kinds("metric"):
-        measure: Any = getattr(load("metric", name), "measure", None)
-        require(callable(measure), f"metric {name}", "a module without it", "a function measure")
-        kind: Any = get_type_hints(measure).get("return")
-        require(kind in (float, int), f"metric {name}, result", kind, "float or int")
-        found[name] = measure
+        module = load("metric", name)
+        require_all(module, module.__name__, {"TITLE": str, "measure": Callable})
+        kind = getattr(module.measure, "__annotations__", {}).get("return", "no annotation")
+        good = kind in (float, int, "float", "int")
+        require(good, f"{module.__name__}.measure, result", kind, "float or int")
+        found[name] = module.measure
     return found
 
 
@@ -272,9 +272,14 @@ def find_task(name: object, where: str = "task") -> type[Task]:
     Raises
     ------
     InputError
-        If there is none of that name.
+        If there is none of that name, or it is not what a `Task` must be.
     """
     if name not in kinds("task"):
         raise InputError(where, name, one_of(name, kinds("task")))
     task: type[Task] = load("task", str(name))
+    row, place = task.row, f"{task.__module__}.Task"
+    good = isinstance(row, type) and issubclass(row, Row)
+    require(good, f"{place}.row", row, "a dataclass derived from gapath.task.Row")
+    names = [each.name for each in fields(row)]
+    require(task.success in names, f"{place}.success", task.success, f"one of {', '.join(names)}")
     return task

@@ -9,6 +9,7 @@ import yaml
 
 from gapath import components, discovery
 from gapath.discovery import kinds, readers, yaml_names, yaml_values
+from gapath.driving.navigation import Navigator
 from gapath.errors import InputError
 from gapath.events import Finished, Recorder, RunFinished, TrialStarted
 from gapath.grid import GridMap
@@ -54,6 +55,14 @@ def test_every_value_of_a_yaml_is_a_field_without_default(group):
         wanted = inspect.signature(target).parameters
         assert set(values) == set(wanted), name
         assert all(p.default is inspect.Parameter.empty for p in wanted.values()), name
+
+
+@pytest.mark.parametrize("protocol", [Planner, Navigator, Recorder, Task])
+def test_what_is_asked_of_a_package_is_the_protocol(protocol):
+    name, needed = discovery.OFFERS[protocol.__name__.lower()]
+    members = {*vars(protocol), *inspect.get_annotations(protocol)}
+    assert name == protocol.__name__
+    assert set(needed.split()) == {member for member in members if not member.startswith("_")}
 
 
 @pytest.mark.parametrize("name", PLANNERS)

@@ -222,7 +222,7 @@ def test_an_edited_package_makes_other_runs(site, tmp_path):
     ("line", "message"),
     [
         ('broken = "gapath_example.nothing"', "gapath.planners: broken = gapath_example.nothing"),
-        ('broken = "gapath_example.detour"', "gapath_example.detour: got a module without it"),
+        ('broken = "gapath_example.detour"', "gapath_example.detour: got no Planner, expected one"),
         ('grid_search = "gapath_example.one_bend"', "a name that gapath does not use itself"),
     ],
 )
@@ -239,6 +239,52 @@ def test_a_package_that_is_wrong_is_one_clear_error(line, message, tmp_path):
     assert (code, out) == (2, "")
     assert message in errors and "Traceback" not in errors
     assert not (tmp_path / "outputs").exists()
+
+
+@pytest.fixture(scope="module")
+def outputs(site, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("outputs")
+    succeed(site, folder, "gapath", "map=kg18_test1", "planner=astar", "recorder=none")
+    return folder / "outputs"
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "command", "message"),
+    [
+        ("table_bends", "ORDER = 99", "", "report", ": got no ORDER, expected one with ORDER, TAS"),
+        ("table_bends", 'TASK = "plan"', "", "report", ": got no TASK, expected one with ORDER"),
+        ("table_bends", "EXPERIMENT =", "MINE =", "report", ": got no EXPERIMENT, expected one"),
+        ("table_bends", "def section", "def part", "report", ": got no section, expected one"),
+        ("table_bends", "ORDER = 99", "ORDER = '9'", "report", ".ORDER: got 9, expected int | flo"),
+        ("detour", "TITLE =", "NAME =", "report", ": got no TITLE, expected one with TITLE, measu"),
+        ("detour", "def measure", "def count", "", ": got no measure, expected one with TITLE"),
+        ("detour", "-> float", "-> str", "", ".measure, result: got <class 'str'>, expected float"),
+        ("detour", "-> float", "", "", ".measure, result: got no annotation, expected float or in"),
+        ("detour", "import", "1 / 0; import", "", ": got ZeroDivisionError('division by zero'), e"),
+        ("weights", "def read", "def load", "map=weights map.path=m.csv", ".Reader: got no read,"),
+        ("round_trip", "def line", "def end", "task=round_trip", ".Task: got no line, expected on"),
+        ("round_trip", " events:", " told:", "task=round_trip", ".Task: got no events, expected o"),
+        ("round_trip", "Row(Row)", "Row", "task=round_trip", ".Task.row: got <class 'gapath_exa"),
+        ("round_trip", '"came_back"', '"back"', "task=round_trip", ".Task.success: got back, exp"),
+        ("one_bend", "def plan", "def way", "planner=one_bend", ".Planner: got no plan, expected"),
+        ("one_bend", "@dataclass(frozen=True)", "", "planner=one_bend", ".Planner: got a class th"),
+        ("counts", "def abort", "def stop", "recorder=counts", ".Recorder: got no abort, expected"),
+    ],
+)  # fmt: skip
+def test_a_component_that_lacks_something_is_one_clear_error(
+    file, old, new, command, message, site, outputs, tmp_path
+):
+    edited = Path(shutil.copytree(site, tmp_path / "edited"))
+    module = edited / "gapath_example" / f"{file}.py"
+    assert old in module.read_text()
+    module.write_text(module.read_text().replace(old, new, 1))
+    report = ("gapath-report", outputs, "-o", "report")
+    given = report if command == "report" else ("gapath", "planner=astar", *command.split())
+    code, out, errors = run(edited, tmp_path, *given)
+    assert (code, out) == (2, "")
+    assert f"gapath_example.{file}{message}" in errors
+    assert len(errors.splitlines()) == 1, errors
+    assert [path.name for path in tmp_path.iterdir()] == ["edited"]
 
 
 def test_its_components_keep_the_contracts(site):

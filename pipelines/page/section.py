@@ -11,6 +11,7 @@ A section is one file of pipelines, ``table*.py`` or ``figure_*.py``, that offer
 """
 
 import importlib
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import groupby
 from operator import itemgetter
@@ -20,9 +21,13 @@ from types import ModuleType
 import pandas as pd
 
 from gapath.discovery import entry_points, imported
+from gapath.errors import require_all
 
 ALL = "*"
 """What a section declares that wants the trials of every task, or of every experiment."""
+
+OFFERS = {"ORDER": int | float, "TASK": str, "EXPERIMENT": str | None, "section": Callable}
+"""What a section must have."""
 
 RECONSTRUCTED = (
     "The maps marked reconstructed are not the paper's: its figures are lost. They were drawn "
@@ -139,9 +144,16 @@ def find_sections() -> list[ModuleType]:
     -------
     list of module
         Those of pipelines, and entry points of installed packages (`gapath.discovery`).
+
+    Raises
+    ------
+    InputError
+        If one of a package is no section.
     """
     own = [module for module in _find("table*.py", "figure_*.py") if hasattr(module, "section")]
     others = [imported(entry) for entry in entry_points("gapath.pipelines").values()]
+    for module in others:
+        require_all(module, module.__name__, OFFERS)
     return sorted([*own, *others], key=lambda module: module.ORDER)
 
 
