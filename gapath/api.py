@@ -11,6 +11,7 @@ from gapath.grid import Field, GridMap
 from gapath.planning.acceleration import AUTO, with_kernels
 from gapath.planning.simulation import plan_once
 from gapath.problem import CornerCutting, Particular, Plan, Planner, Problem
+from gapath.store.inputs import watched
 
 
 def load_map(path: str | Path, /, **settings: Any) -> GridMap:
@@ -118,11 +119,13 @@ def _named(name: str, kernels: str, settings: dict[str, Any]) -> Planner:
     key = (name, kernels, repr(sorted(settings.items())) if settings else "")
     planner = _made.get(key)
     if planner is None:
-        made: Planner = build("planner", yaml_values("planner", name) | settings, "planner")
+        with watched() as inputs:
+            made: Planner = build("planner", yaml_values("planner", name) | settings, "planner")
         planner = with_kernels(made, kernels)
         if len(_made) >= _MOST_MADE:
             _made.clear()
-        _made[key] = planner
+        if not inputs:  # else it may be another one the next time
+            _made[key] = planner
     return planner
 
 

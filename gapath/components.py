@@ -82,6 +82,7 @@ def normalised(group: str, values: dict[str, Any], where: str) -> dict[str, Any]
 def _kind_and_settings(
     group: str, values: dict[str, Any], where: str
 ) -> tuple[str, dict[str, Any]]:
+    require(isinstance(values, dict), where, values, "kind and its settings")
     values = dict(values)
     kind = values.pop("kind", None)
     if kind not in kinds(group):

@@ -288,6 +288,10 @@ class Particular(Protocol):
         """Raise InputError if a problem does not suit."""
 
 
+A_PLANNER = "a mapping with base, the name of a planner's YAML"
+"""What is right where a setting has to be a planner."""
+
+
 @runtime_checkable
 class Planner(Protocol):
     """What a module of `gapath.planners` offers under the name ``Planner``.

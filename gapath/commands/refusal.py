@@ -3,9 +3,12 @@
 import argparse
 import contextlib
 import shlex
+import traceback
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import Any, NoReturn
 
+import yaml
 from hydra import compose, initialize_config_dir
 from hydra._internal.utils import get_args_parser
 from hydra.core.global_hydra import GlobalHydra
@@ -54,7 +57,10 @@ def explain(error: Exception, words: Sequence[str], sweep: bool) -> str | None:
         found to be wrong, and the error is none of `BAD_CONFIGURATION`.
     """
     if not isinstance(error, InputError):
-        error = _found(error, words, sweep) or error
+        with contextlib.suppress(Exception):  # it stumbles over the same again
+            error = _found(error, words, sweep) or error
+    if isinstance(error, yaml.YAMLError | UnicodeDecodeError) or _hydras_own(error):
+        error = InputError("configuration", error, "YAML that can be read, as UTF-8")
     if isinstance(error, InputError):
         return " ".join(str(error).split())
     if not isinstance(error, BAD_CONFIGURATION):
@@ -62,6 +68,13 @@ def explain(error: Exception, words: Sequence[str], sweep: bool) -> str | None:
     said = (getattr(error, "full_key", ""), error, error.__cause__)
     lines = [str(each).strip().partition("\n")[0] for each in said if each]
     return ": ".join(lines) or type(error).__name__
+
+
+def _hydras_own(error: Exception) -> bool:
+    """Tell whether Hydra stumbled itself, over a YAML of a shape that it does not expect."""
+    places = traceback.extract_tb(error.__traceback__)
+    known = isinstance(error, BAD_CONFIGURATION)
+    return not known and bool(places) and "hydra" in Path(places[-1].filename).parts
 
 
 def _found(error: Exception, words: Sequence[str], sweep: bool) -> InputError | None:

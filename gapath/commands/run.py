@@ -22,7 +22,7 @@ from omegaconf import DictConfig, OmegaConf
 
 import gapath
 from gapath.commands.refusal import BAD_CONFIGURATION, arguments, explain
-from gapath.discovery import component_of, conf_packages, kinds
+from gapath.discovery import component_of, conf_packages, kinds, yaml_names
 from gapath.errors import InputError, require
 from gapath.runs.config import HOW, Run, conf_folder, make_run
 from gapath.runs.experiment import Execution, execute, run_folder
@@ -61,10 +61,12 @@ class SweepCheck(Callback):  # type: ignore[misc]
             parser = OverridesParser.create(config_loader=loader)
             for words in BasicSweeper.split_arguments(parser.parse_overrides(every), None)[0]:
                 config = compose("config", overrides=words, return_hydra_config=True)
-                choices = dict(config.hydra.runtime.choices)
+                runtime = config.hydra.runtime
+                choices = dict(runtime.choices)
                 OmegaConf.set_struct(config, False)
                 del config["hydra"]
                 check_used(words, config.task)
+                check_own(runtime)
                 run = make_run(config, choices, settings_of(words))
                 check_apart(run_folder(run).path, words, folders)
             for folder in folders:
@@ -94,12 +96,17 @@ def job(config: DictConfig) -> int:
     os.chdir(hydra.runtime.cwd)  # where paths are typed, also with hydra.job.chdir=true
     try:
         check_used(words, config.task)
+        check_own(hydra.runtime)
         run = make_run(config, hydra.runtime.choices, settings_of(words))
         execution = execute(run, command(words, hydra.runtime.config_sources))
+    except Exception as error:
+        return refuse(error, words, sweep)
+    try:
         print(describe(run, execution, short=sweep), flush=True)
     except BrokenPipeError:  # gapath ... | head: the run is done, nobody reads on
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    except Exception as error:
+    except OSError as error:
+        error.filename = "standard output"
         return refuse(error, words, sweep)
     return 0
 
@@ -124,6 +131,15 @@ def check_used(words: Sequence[str], task: str) -> None:
         good = " or ".join(f"task={name}" for name in able)
         expected = f"{good}, to which the group {group} belongs"
         require(task in able, key, f"{value or repr('')} with task={task}", expected)
+
+
+def check_own(runtime: DictConfig) -> None:
+    """Raise InputError if a YAML of the user's own was chosen by a name that gapath has first."""
+    for source in runtime.config_sources:
+        for group, name in runtime.choices.items():
+            if source["provider"] == "command-line" and name in yaml_names(group):
+                file = Path(source["path"], group, f"{name}.yaml")
+                require(not file.exists(), group, file, f"another name: gapath has its own {name}")
 
 
 def settings_of(words: Sequence[str]) -> list[str]:
@@ -152,7 +168,7 @@ def refuse(error: Exception, words: Sequence[str], sweep: bool) -> int:
     ----------
     error : Exception
         What was raised. One that is no `BAD_CONFIGURATION` and not the system's is a fault of
-        some component: its traceback is in the run's ``status.json``, or else is printed.
+        some component: once a run has begun, its traceback is in ``status.json``.
     words : sequence of str
         What was set on the command line.
     sweep : bool
@@ -167,12 +183,10 @@ def refuse(error: Exception, words: Sequence[str], sweep: bool) -> int:
     inside = bool(notes) and not isinstance(error, BAD_CONFIGURATION)  # of a run that had begun
     line = None if inside else explain(error, words, sweep)
     if line is None and isinstance(error, OSError) and not inside:
-        expected = "a file or folder that can be written"
-        line = str(InputError(error.filename or "standard output", error.strerror, expected))
+        expected = "a file or folder that can be read, or written"
+        line = str(InputError(error.filename or "output", error.strerror, expected))
     if line is None:
         code = FAILED
-        if not notes:
-            traceback.print_exception(error)
         last = traceback.extract_tb(error.__traceback__)[-1]
         where = f"{Path(last.filename).name}, line {last.lineno}"
         what = " ".join(f"{type(error).__name__}: {error}".split())

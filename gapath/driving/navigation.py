@@ -15,9 +15,6 @@ from gapath.problem import CornerCutting, Plan
 
 Path = NDArray[np.int32]
 
-A_PLANNER = "a mapping with base, the name of a planner's YAML"
-"""What a navigator's setting that is a planner would be, for messages."""
-
 StreamOf = Callable[[int, int], Stream]
 """The random stream of one call within a step: (part, index) -> stream."""
 

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.driving.navigation import A_PLANNER, Call, Decision, Path, Situation, StreamOf
+from gapath.driving.navigation import Call, Decision, Path, Situation, StreamOf
 from gapath.driving.past_path import simplified
 from gapath.errors import Checks, require
 from gapath.events import Mode
@@ -19,7 +19,7 @@ from gapath.grid import Field
 from gapath.kernels.field_of_view import remaining_cost
 from gapath.kernels.rng import fill, high
 from gapath.kernels.units import SCALE
-from gapath.problem import Planner
+from gapath.problem import A_PLANNER, Planner
 
 A, B, C, DRAW = 0, 1, 2, 3  # numbers of the parts in random streams
 
@@ -82,7 +82,8 @@ class Navigator:
         good = len(interval) == 2 and 1 <= interval[0] <= interval[1] <= 10**6
         check("retreat_interval", good, "[least, most] with 1 <= least <= most <= 1000000")
         check("return_penalty", 0 <= self.return_penalty <= 1000, "a number in [0, 1000]")
-        check("replan", len(self.replan) > 0, "at least one planner")
+        some = isinstance(self.replan, list) and len(self.replan) > 0
+        check("replan", some, "a list of at least one planner")
         named = {"retreat": self.retreat, "explore": self.explore}
         named |= {f"replan[{i}]": planner for i, planner in enumerate(self.replan)}
         for name, planner in named.items():

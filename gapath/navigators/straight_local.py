@@ -17,14 +17,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.driving.navigation import A_PLANNER, Call, Decision, Path, Situation, StreamOf
+from gapath.driving.navigation import Call, Decision, Path, Situation, StreamOf
 from gapath.driving.past_path import Track
 from gapath.errors import Checks
 from gapath.grid import Field, Table
 from gapath.kernels.field_of_view import remaining_cost
 from gapath.kernels.s04.genotype import MAX_SIDE
 from gapath.kernels.units import OBSTACLE
-from gapath.problem import CornerCutting, Particular, Plan, Planner, no_path, nothing
+from gapath.problem import A_PLANNER, CornerCutting, Particular, Plan, Planner, no_path, nothing
 
 
 class Memory(NamedTuple):

@@ -6,11 +6,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from gapath.errors import require
 from gapath.grid import Field, GridMap
 from gapath.kernels.rng import Stream
 from gapath.kernels.units import OBSTACLE, SCALE
 from gapath.planning.stages import Stages
-from gapath.problem import CornerCutting, Particular, Plan, PlanStatus, Query
+from gapath.problem import A_PLANNER, CornerCutting, Particular, Plan, PlanStatus, Query
+from gapath.problem import Planner as AnyPlanner
 from gapath.survey.obstacle_image import Clearance, dilate
 
 
@@ -30,6 +32,10 @@ class Planner(Clearance):
     planner: Any
 
     exact = False
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require(isinstance(self.planner, AnyPlanner), "planner.planner", self.planner, A_PLANNER)
 
     @property
     def minimises(self) -> str:

@@ -61,6 +61,9 @@ class Root:
     kernels: str
 
 
+RESERVED = ("bench", "report")
+"""Folders of outputs that hold no runs."""
+
 HOW = ("output", "force", "threads", "kernels")
 """Settings of how to run, which change no result: no part of a run's settings."""
 
@@ -157,6 +160,7 @@ def make_run(
         repr(root.name),
         "letters, digits, - and _",
     )
+    require(root.name not in RESERVED, "name", root.name, "another: the report's files lie there")
     useful = task.threaded or root.threads == 1
     require(useful, "threads", root.threads, f"1 with task={task.name}, which they do not speed up")
     common = {key: value for key, value in asdict(root).items() if key not in HOW}
@@ -174,7 +178,8 @@ def make_run(
         maps = made.read()
     with watched() as map_inputs:
         problem = read_problem(root, maps)
-    made.check(problem)
+    with watched() as checked_with:
+        made.check(problem)
     columns(task.row)  # a package's wrong metric, or event, is refused before anything is written
     check_events(task)
     for recorder in recorders:
@@ -192,7 +197,7 @@ def make_run(
         root.force,
         root.threads,
         map_inputs,
-        method_inputs,
+        method_inputs | checked_with,
     )
 
 

@@ -16,6 +16,7 @@ from gapath.planning.acceleration import AUTO, with_kernels
 from gapath.problem import Plan
 from gapath.runs.config import Run, task_of
 from gapath.store.durable import named, write_whole
+from gapath.store.inputs import Inputs, watched
 from gapath.store.keys import run_key, setting_hash, versions
 from gapath.store.records import (
     CONFIG,
@@ -26,12 +27,12 @@ from gapath.store.records import (
     Manifest,
     State,
     Status,
-    is_whole,
     now,
 )
 from gapath.store.rows import parquet
 from gapath.store.runfolder import Busy, RunFolder
 from gapath.store.settings import nested, tabular
+from gapath.store.whole import is_whole
 from gapath.task import Batch, columns
 
 
@@ -129,7 +130,7 @@ def execute(run: Run, command: str, progress: bool = True) -> Execution:
     folder.create()
     try:
         with folder.lock():
-            if is_whole(folder) and not run.force:
+            if not run.force and is_whole(folder, run.inputs):
                 return Execution(folder.path, State.SKIPPED, [], [])
             return _execute_held(run, folder, command, progress)
     except Busy:
@@ -148,12 +149,15 @@ def _execute_held(run: Run, folder: RunFolder, command: str, progress: bool) -> 
     try:
         config = yaml.safe_dump(nested(run.settings), sort_keys=False, allow_unicode=True)
         write_whole(folder.path / CONFIG, config.encode())
-        optimum = run.task.optimum(run.problem)
-        rows, recorded = _do_trials(run, optimum, folder, progress)
+        with watched() as read:
+            optimum = run.task.optimum(run.problem)
+            rows, recorded = _do_trials(run, optimum, folder, progress)
+        place = folder.path.resolve()  # recorders may read what they have written
+        late = {p: d for p, d in read.items() if not Path(p).resolve().is_relative_to(place)}
         write_whole(folder.path / TRIALS, _table(run, rows))
         names = [CONFIG, TRIALS, *recorded]
         folder.keep_only([*names, STATUS, MANIFEST])
-        _manifest(run, folder, command, names).write(folder)
+        _manifest(run, folder, command, names, late).write(folder)
         state = State.DONE if optimum.feasible else State.INFEASIBLE
         Status(state, started, now()).write(folder)
         return Execution(folder.path, state, rows, [*names, MANIFEST, STATUS])
@@ -220,10 +224,12 @@ def _table(run: Run, rows: list[Any]) -> bytes:
     return parquet(types, [row.values() for row in rows], own)
 
 
-def _manifest(run: Run, folder: RunFolder, command: str, names: list[str]) -> Manifest:
+def _manifest(
+    run: Run, folder: RunFolder, command: str, names: list[str], late: Inputs
+) -> Manifest:
     return Manifest(
         key=folder.path.name,
-        setting=setting_hash(run.settings, run.problem, run.method_inputs),
+        setting=setting_hash(run.settings, run.problem, {**run.method_inputs, **late}),
         experiment=run.experiment,
         task=run.task.name,
         map=run.problem.map.name,
@@ -238,7 +244,7 @@ def _manifest(run: Run, folder: RunFolder, command: str, names: list[str]) -> Ma
         trials=run.trials,
         command=command,
         map_inputs=dict(run.map_inputs),
-        method_inputs=dict(run.method_inputs),
+        method_inputs={**run.method_inputs, **late},
         versions=versions(),
         files={
             name: FileEntry(folder.sha256(name), (folder.path / name).stat().st_size)

@@ -1,7 +1,8 @@
 """Which files a run reads: what they hold is part of its key.
 
 Python itself tells of every file that is opened, so that no reader, planner or library can
-forget to.
+forget to. What code in C or another process opens, or what is kept from an earlier reading, it
+does not see.
 """
 
 import hashlib
@@ -17,15 +18,18 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from gapath.discovery import conf_packages, other_folders
-from gapath.kernels.jit import cache_root
+from gapath.events import Settings
 
 Inputs: TypeAlias = Mapping[str, str]
 """The files that a run reads: path, as it was opened -> SHA-256 of the content."""
 
-_SYSTEM = ("/proc", "/sys", "/dev", "/etc", "/run")
+_SYSTEM = ("/proc", "/sys")
 
-_LIBRARIES = {"site-packages", "dist-packages"}
-"""Folders of installed packages: of this environment, of the user, of whatever a .pth adds."""
+_LIBRARIES = ("site-packages", "dist-packages")
+"""Folders of installed packages, on Python's path: of the environment, the user, a .pth."""
+
+_COMPILED = (*all_suffixes(), ".nbi", ".nbc")
+"""Endings of code: of modules and, the last two, of numba's cache."""
 
 _opened: list[list[str]] = []
 """The paths that were opened for reading, for each `watched` that is under way."""
@@ -36,8 +40,8 @@ def watched() -> Iterator[dict[str, str]]:
     """Note the files that are read meanwhile.
 
     Left out are those that are no input: all code, files of Python, of libraries, of gapath but
-    for its maps, of packages that add components (those are in the key anyway), of the cache of
-    kernels, and of the system.
+    for its maps, of packages that add components (those are in the key anyway), and of the
+    system.
 
     Yields
     ------
@@ -54,12 +58,28 @@ def watched() -> Iterator[dict[str, str]]:
         _opened.pop()
     for path in dict.fromkeys(paths):
         if _is_input(Path(path).resolve()):
-            found[path] = hashlib.sha256(Path(path).read_bytes()).hexdigest()
+            found[path] = _sha256(path)
 
 
 def contents(inputs: Inputs) -> list[str]:
     """Give names and hashes of files for a key: it does not matter in which folder they lie."""
     return sorted(f"{Path(path).name} {digest}" for path, digest in inputs.items())
+
+
+def without_paths(settings: Settings, inputs: Inputs) -> Settings:
+    """Leave out settings that name an input, of which its content says more."""
+    return {key: value for key, value in settings.items() if value not in inputs}
+
+
+def unchanged(inputs: Inputs) -> bool:
+    """Tell whether files are there and hold what they held."""
+    with suppress(OSError):
+        return all(_sha256(path) == digest for path, digest in inputs.items())
+    return False
+
+
+def _sha256(path: str) -> str:
+    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
 
 
 @lru_cache
@@ -78,12 +98,12 @@ def _note(event: str, arguments: tuple[Any, ...]) -> None:
 
 
 def _is_input(file: Path) -> bool:
-    if not file.is_file() or file.name.endswith(tuple(all_suffixes())):
+    if not file.is_file() or file.name.endswith(_COMPILED):
+        return False
+    if any(part.endswith((".dist-info", ".egg-info")) for part in file.parts):
         return False
     if file.is_relative_to(_folder("gapath.maps")):  # which lies among the libraries, or not
         return True
-    if not _LIBRARIES.isdisjoint(file.parts):
-        return False
     return not any(file.is_relative_to(place) for place in _no_inputs())
 
 
@@ -94,8 +114,7 @@ def _no_inputs() -> list[Path]:
     places += [str(Path(os.__file__).parent), *_SYSTEM]  # the first: a virtual environment's base
     own = [_folder(package) for package in ("gapath", "gapath.pipelines", *conf_packages())]
     own += other_folders().values()
-    with suppress(RuntimeError):
-        own.append(cache_root())
+    own += [Path(place) for place in sys.path if Path(place).name in _LIBRARIES]
     return [Path(place).resolve() for place in places] + [place.resolve() for place in own]
 
 

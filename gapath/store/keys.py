@@ -9,13 +9,13 @@ from pathlib import Path
 from gapath.discovery import other_files, other_packages
 from gapath.events import Settings
 from gapath.problem import Problem
-from gapath.store.inputs import Inputs, contents
+from gapath.store.inputs import Inputs, contents, without_paths
 from gapath.store.settings import text_of
 
 VERSIONED = ("gapath", "numpy", "numba", "mcap", "rosbags", "rerun-sdk", "hydra-core", "pyarrow")
 
-_NO_RESULT = ("trials", "recorder")
-"""Settings that change no trial."""
+_NO_SETTING = ("trials", "recorder", "map")
+"""What makes no other setting: it changes no trial, or is told by what it comes to, the map."""
 
 
 _NO_CODE = ("conf", "maps", "pipelines")
@@ -73,8 +73,9 @@ def setting_hash(settings: Settings, problem: Problem, inputs: Inputs) -> str:
     str
         Sixteen hexadecimal digits.
     """
-    kept = {k: v for k, v in settings.items() if k.partition(".")[0] not in _NO_RESULT}
-    return _hash([text_of(dict(sorted(kept.items()))), *_posed(problem), *contents(inputs)])
+    kept = without_paths(settings, inputs).items()
+    tried = {key: value for key, value in kept if key.partition(".")[0] not in _NO_SETTING}
+    return _hash([text_of(dict(sorted(tried.items()))), *_posed(problem), *contents(inputs)])
 
 
 def run_key(settings: Settings, problem: Problem, inputs: Inputs) -> str:
@@ -99,7 +100,8 @@ def run_key(settings: Settings, problem: Problem, inputs: Inputs) -> str:
 
 
 def _posed(problem: Problem) -> list[str]:
-    return [problem.map.digest, f"{problem.start} {problem.target}"]
+    others = [f"{name} {grid.digest}" for name, grid in sorted(problem.maps.items())]
+    return [problem.map.digest, f"{problem.start} {problem.target}", *others]
 
 
 def _hash(parts: Iterable[str]) -> str:

@@ -80,7 +80,7 @@ class Manifest:
     versions : mapping of str to str
         Versions of gapath and of what it stands on.
     map_inputs, method_inputs : mapping of str to str
-        The files that the map and the method were made from: path -> SHA-256.
+        The files that the map and the method were made from, or read later: path -> SHA-256.
     files : mapping of str to FileEntry
         All files but the manifest and the status.
     """
@@ -284,17 +284,6 @@ def read_record(folder: Path) -> RunRecord:
     return RunRecord(folder, status, manifest, fault)
 
 
-def is_whole(folder: RunFolder) -> bool:
-    """Tell whether a run was finished and every file is as the manifest says."""
-    try:
-        files = Manifest.read(folder.path).files
-        return Status.read(folder.path).state in WHOLE and all(
-            folder.sha256(name) == entry.sha256 for name, entry in files.items()
-        )
-    except (OSError, InputError):
-        return False
-
-
 def find_runs(outputs: Path) -> list[RunRecord]:
     """Find the run folders below a folder, sorted by experiment and key.
 
@@ -315,8 +304,12 @@ def find_runs(outputs: Path) -> list[RunRecord]:
     """
     require(outputs.is_dir(), outputs, "no such folder", "a folder with run folders")
     marks = (STATUS, MANIFEST, CONFIG, TRIALS)
-    folders = sorted(path for path in outputs.glob("*/*") if path.is_dir())
-    runs = [read_record(path) for path in folders if any((path / mark).exists() for mark in marks)]
+    try:
+        folders = sorted(path for path in outputs.glob("*/*") if path.is_dir())
+        folders = [path for path in folders if any((path / mark).exists() for mark in marks)]
+        runs = [read_record(path) for path in folders]
+    except OSError as error:
+        raise InputError(error.filename or outputs, error.strerror, "readable folders") from error
     require(bool(runs), outputs, "no runs", "run folders <experiment>/<key>/; `gapath` makes them")
     return runs
 

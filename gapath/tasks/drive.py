@@ -218,6 +218,7 @@ class Task:
                 "seed": row.seed,
                 "outcome": row.outcome + self._remark(rows),
                 "steps": row.steps,
+                "step limit": self._told_limit(row),
                 "shortest": shortest,
                 **ratio,
                 "GA calls": f"{row.ga_calls} (A {row.calls_a}, B {row.calls_b}, C {row.calls_c})",
@@ -232,6 +233,7 @@ class Task:
         ratios = [row.steps_ratio for row in rows if not math.isnan(row.steps_ratio)]
         if ratios:
             lines["median ratio"] = f"{statistics.median(ratios):.3g} of the shortest possible"
+        lines["step limit"] = self._told_limit(rows[0])
         lines["median calls"] = f"{statistics.median(row.ga_calls for row in rows):g}"
         lines["median time"] = _median_time(rows)
         return lines
@@ -249,6 +251,11 @@ class Task:
             if these
         ]
         return f"{len(rows)} drives: {', '.join(ends)}; median {_median_time(rows)}"
+
+    def _told_limit(self, row: DriveRow) -> str:
+        if self.step_limit:
+            return str(self.step_limit)
+        return f"{usual_limit(row.width * row.height)}, from the map's size"
 
     def _remark(self, rows: list[DriveRow]) -> str:
         """Say what an outcome alone does not, of drives that ended alike."""

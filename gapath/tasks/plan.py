@@ -9,13 +9,14 @@ from functools import partial
 from typing import Any, ClassVar, Self
 
 from gapath.components import build
+from gapath.errors import require
 from gapath.events import Event, Evolved, RunStarted, Surveyed, TrialFinished, TrialStarted
 from gapath.grid import GridMap
 from gapath.planning.path import octile_length
 from gapath.planning.shortest_path import shortest_path
 from gapath.planning.simulation import TimedPlan, plan_trials
 from gapath.problem import Particular, Plan, Planner, Problem
-from gapath.task import Batch, Row, Trial, head
+from gapath.task import Batch, Row, Trial, head, metrics
 
 
 @dataclass(frozen=True)
@@ -67,7 +68,11 @@ class Task:
     @classmethod
     def make(cls, settings: Mapping[str, Any]) -> Self:
         """Make it from nested settings; raises InputError."""
-        return cls(build("planner", settings["planner"], "planner"))
+        planner: Planner = build("planner", settings["planner"], "planner")
+        known = ("weights", *metrics())
+        good = planner.minimises in known
+        require(good, "planner, minimises", planner.minimises, f"one of {', '.join(known)}")
+        return cls(planner)
 
     def read(self) -> Mapping[str, GridMap]:
         """Read nothing: it needs the map alone."""

@@ -66,7 +66,7 @@ def read_trials(runs: Iterable[RunRecord]) -> Collected:
     used, skipped = [], []
     kept, older = _newest(runs)
     skipped += [Skipped(run.name, run.fault) for run in kept if run.fault]
-    skipped += [Skipped(run.name, f"older than {new}, of the same setting") for run, new in older]
+    skipped += [Skipped(run.name, f"{new} counts, of the same setting") for run, new in older]
     for run in tqdm([run for run in kept if not run.fault], "runs", disable=None):
         try:
             frames[run.known.task].append(_trials(run))
@@ -96,9 +96,15 @@ def _newest(runs: Iterable[RunRecord]) -> tuple[list[RunRecord], list[tuple[RunR
     """Split runs into those to read and the superseded ones with the name of their successor."""
     runs = sorted(runs, key=lambda run: (run.date, run.name), reverse=True)
     newest: dict[str, RunRecord] = {}
+    for run in runs:
+        if not run.fault:
+            first = newest.setdefault(run.known.setting, run)
+            more = run.known.trials > first.known.trials  # the same streams, and others
+            if more and run.known.versions == first.known.versions:
+                newest[run.known.setting] = run
     kept, older = [], []
     for run in runs:
-        first = run if run.fault else newest.setdefault(run.known.setting, run)
+        first = run if run.fault else newest[run.known.setting]
         if first is run:
             kept.append(run)
         else:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 
+from gapath.pipelines.reading.names import told_apart
 from gapath.store.records import RunRecord
 
 
@@ -20,7 +21,9 @@ def listing(runs: Iterable[RunRecord]) -> list[dict[str, str]]:
         size; "?" where no manifest says it.
     """
     rows = []
-    for run in runs:
+    runs = list(runs)
+    apart = {run.folder: run for run in told_apart([run for run in runs if not run.fault])}
+    for run in (apart.get(run.folder, run) for run in runs):
         known = run.manifest
         instance = f" #{known.map_instance}" if known and known.map_instance else ""
         rows.append(

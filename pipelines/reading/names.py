@@ -10,7 +10,7 @@ from collections.abc import Callable, Hashable, Mapping, Sequence
 from pathlib import Path
 
 from gapath.runs.naming import Method, with_changes
-from gapath.store.inputs import Inputs, contents
+from gapath.store.inputs import Inputs, contents, without_paths
 from gapath.store.records import RunRecord
 from gapath.store.settings import Value, tabular
 
@@ -51,8 +51,8 @@ def told_apart(runs: Sequence[RunRecord]) -> list[RunRecord]:
 
 
 def _method(run: RunRecord) -> dict[str, Value]:
-    items = tabular(run.settings).items()
-    return {key: value for key, value in items if key.partition(".")[0] not in _NO_METHOD}
+    settings = tabular(without_paths(run.settings, run.known.method_inputs)).items()
+    return {key: value for key, value in settings if key.partition(".")[0] not in _NO_METHOD}
 
 
 def _map(run: RunRecord) -> dict[str, Value]:

@@ -30,7 +30,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        The exit code: 0, or 2 for a folder that holds nothing to report.
+        The exit code: 0, 2 for a folder that holds nothing to report, 130 if interrupted.
     """
     arguments = list(sys.argv[1:] if argv is None else argv)
     try:
@@ -42,6 +42,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     except InputError as error:
         print(f"gapath-report: {error}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        return 130
     except BrokenPipeError:  # `gapath-report runs | head`
         sys.stderr.close()
     return 0

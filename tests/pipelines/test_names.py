@@ -141,3 +141,41 @@ def test_a_yaml_of_ones_own_is_named_with_what_was_typed(gapath, tmp_path):
     assert "my_ga[population=20]:" in text and "my_ga[population=150]:" in text
     (first, _) = find_runs(tmp_path / "out")
     assert f"--config-dir={tmp_path / 'conf'} planner=my_ga" in first.known.command
+
+
+def test_one_map_under_several_paths_is_one_setting(gapath, tmp_path):
+    """Its trials would be counted as often as there are spellings."""
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "m.map").write_text(WALL)
+    ends = ("map.start=[0,0]", "map.target=[29,7]", "planner=ga1", "recorder=none", "trials=3")
+    for kind, path in [("movingai", "a/m.map"), ("movingai", "./a/m.map"), ("file", "b/m.map")]:
+        assert gapath(f"map={kind}", f"map.path={path}", *ends)[0] == 0
+    trials, skipped, _ = read_trials(find_runs(tmp_path / "out"))
+    assert len(trials["plan"]) == 3
+    assert [entry.reason.endswith("counts, of the same setting") for entry in skipped] == [True] * 2
+
+
+def test_of_one_setting_and_code_the_run_of_most_trials_counts(gapath, tmp_path):
+    for trials in (5, 2):
+        assert gapath("map=kg18_test1", "planner=ga1", "recorder=none", f"trials={trials}")[0] == 0
+    assert len(read_trials(find_runs(tmp_path / "out")).trials["plan"]) == 5
+
+
+def test_a_yaml_that_has_a_name_of_gapaths_is_refused(gapath, tmp_path):
+    folder = tmp_path / "conf" / "planner"
+    folder.mkdir(parents=True)
+    (folder / "ga3.yaml").write_text("kind: bspline_ga\n")
+    code, _, errors = gapath("--config-dir", str(tmp_path / "conf"), "planner=ga3", "recorder=none")
+    assert code == 2 and "another name: gapath has its own ga3" in errors
+    assert len(errors.splitlines()) == 1
+
+
+@pytest.mark.parametrize("content", [b"population: [80", b"defaults: ga3", b"\xff\xfe"])
+def test_a_yaml_that_cannot_be_read_is_one_line(content, gapath, tmp_path):
+    folder = tmp_path / "conf" / "planner"
+    folder.mkdir(parents=True)
+    (folder / "mine.yaml").write_bytes(content)
+    code, out, errors = gapath("--config-dir", str(tmp_path / "conf"), "planner=mine")
+    assert (code, out) == (2, "") and len(errors.splitlines()) == 1
+    assert not (tmp_path / "out").exists()

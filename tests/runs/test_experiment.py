@@ -22,7 +22,7 @@ from gapath.recorders.mcap import read_events
 from gapath.runs import config
 from gapath.runs.experiment import execute, replay_events
 from gapath.runs.naming import Method
-from gapath.store import keys, records, runfolder
+from gapath.store import keys, runfolder, whole
 from gapath.store.settings import flatten
 from gapath.tasks.plan import Task as PlanTask
 
@@ -127,7 +127,7 @@ def test_a_killed_run_leaves_nothing_that_looks_whole(tmp_path):
     assert not (folder / "run.mcap").exists()
     assert not (folder / "manifest.json").exists()
     with runfolder.RunFolder(folder).lock():  # nobody holds it: the run is dead
-        assert not records.is_whole(runfolder.RunFolder(folder))
+        assert not whole.is_whole(runfolder.RunFolder(folder), {})
     saved = tmp_path / "saved.mcap"
     assert log_cli.main(["salvage", str(folder / "run.mcap.part"), "-o", str(saved)]) == 0
     assert sum(1 for _ in read_events(saved)) > 3

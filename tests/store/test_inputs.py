@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from gapath.store.inputs import contents, watched
+from gapath.store.inputs import contents, unchanged, watched, without_paths
 
 READ = [
     lambda path: open(path).close(),  # noqa: PTH123
@@ -71,3 +71,31 @@ def test_for_a_key_it_does_not_matter_where_a_file_lies():
     assert contents({"a/k.map": "1"}) == contents({"b/k.map": "1"})
     assert contents({"k.map": "1"}) != contents({"k.map": "2"})
     assert contents({"k.map": "1", "l.map": "2"}) != contents({"k.map": "2", "l.map": "1"})
+
+
+@pytest.mark.parametrize("folder", ["site-packages", "kernels", "etc", "run"])
+def test_a_file_in_a_folder_of_any_name_is_an_input(folder, tmp_path, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    (tmp_path / folder).mkdir()
+    path = tmp_path / folder / "k.map"
+    path.write_text("1")
+    with watched() as found:
+        path.read_text()
+    assert list(found) == [str(path)]
+
+
+def test_what_was_read_is_compared(tmp_path):
+    path = tmp_path / "k.map"
+    path.write_text("1")
+    with watched() as found:
+        path.read_text()
+    assert unchanged(found) and unchanged({})
+    path.write_text("2")
+    assert not unchanged(found)
+    path.unlink()
+    assert not unchanged(found)
+
+
+def test_a_setting_that_names_an_input_is_told_by_its_content():
+    settings = {"drive.known_map": "a/k.map", "drive.step_limit": 5}
+    assert without_paths(settings, {"a/k.map": "1"}) == {"drive.step_limit": 5}
