@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 
 import pyarrow.parquet as pq
 import pytest
@@ -102,6 +103,29 @@ def test_the_same_setting_with_other_code_or_more_trials_is_the_same_setting(mon
     monkeypatch.setattr(keys, "code_hash", lambda: "other")
     assert keys.setting_hash(settings(9, "none"), problem, {}) == few
     assert keys.setting_hash({"seed": 2}, problem, {}) != few
+
+
+class ReadsLate:
+    """A planner that looks into a file each time that it plans."""
+
+    exact = True
+    minimises = "weights"
+
+    def __init__(self, path):
+        self.path = path
+
+    def plan(self, problem, stream):
+        self.path.read_text()
+        return shortest_path(problem)
+
+
+def test_a_file_that_is_read_only_while_trials_run_is_compared(tmp_path):
+    path = tmp_path / "late.txt"
+    path.write_text("1")
+    run = replace(make_run(tmp_path / "out", trials=1), task=PlanTask(ReadsLate(path)))
+    assert [execute(run, "test").state for _ in range(2)] == ["done", "skipped"]
+    path.write_text("2")
+    assert [execute(run, "test").state for _ in range(2)] == ["done", "skipped"]
 
 
 def test_a_killed_run_leaves_nothing_that_looks_whole(tmp_path):
