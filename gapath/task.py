@@ -46,8 +46,8 @@ class Row:
 
     `map_digest` is the SHA-256 of what a planner sees of the map; `published_length` is the octile
     length that the map's author gives, `length_ratio` that of a path that was found over it, both
-    NaN where there is none; `metrics` holds the columns
-    of `gapath.metrics` by name, all of them NaN where the trial has no solution.
+    NaN where there is none; `metrics` holds the columns of `gapath.metrics` by name, all of them
+    NaN where the trial has no solution.
     """
 
     experiment: str

@@ -30,7 +30,7 @@ def arguments() -> argparse.Namespace:
     """Read the command line as Hydra will; raises InputError for an unknown option."""
 
     def refuse(message: str) -> NoReturn:
-        raise InputError("command line", message, "key=value, and options of `gapath --hydra-help`")
+        raise InputError("command line", message, "key=value, options before or after all of them")
 
     parser: Any = get_args_parser()
     parser.error = refuse

@@ -30,6 +30,7 @@ def read_bytes(path: str | Path, limit: int = MAX_FILE_BYTES) -> bytes:
         If it is missing, not a regular file (a pipe would hang), empty, too large or
         unreadable.
     """
+    require(str(path) != "", "map.path", "", "a file")
     try:
         require(Path(path).exists(), path, "no such file", "an existing file")
         require(Path(path).is_file(), path, "not a regular file", "a file")
