@@ -26,7 +26,7 @@ from gapath.discovery import component_of, conf_packages, kinds, yaml_names
 from gapath.errors import InputError, require
 from gapath.runs.config import HOW, Run, conf_folder, make_run
 from gapath.runs.experiment import Execution, execute, run_folder
-from gapath.store.records import State
+from gapath.store.records import RunState
 from gapath.store.runfolder import RunFolder
 from gapath.task import find_task
 
@@ -215,9 +215,9 @@ def describe(run: Run, execution: Execution, short: bool) -> str:
     grid = run.problem.map
     instance = f"#{grid.instance}" if grid.instance else ""
     what = f"{grid.name}{instance} {run.method.name}"
-    if execution.state is State.SKIPPED:
+    if execution.state is RunState.SKIPPED:
         return f"{what}: skipped, {execution.folder} is whole (force=true runs it again)"
-    if execution.state is State.BUSY:
+    if execution.state is RunState.BUSY:
         return f"{what}: skipped, another process is working on {execution.folder}"
     rows = execution.rows
     if short:

@@ -25,7 +25,7 @@ from gapath.store.records import (
     TRIALS,
     FileEntry,
     Manifest,
-    State,
+    RunState,
     Status,
     now,
 )
@@ -44,7 +44,7 @@ class Execution:
     ----------
     folder : Path
         The run folder.
-    state : State
+    state : RunState
         DONE, INFEASIBLE, SKIPPED or BUSY.
     rows : list of dataclass
         The trials, of the task's row type; empty if the run was not executed.
@@ -53,7 +53,7 @@ class Execution:
     """
 
     folder: Path
-    state: State
+    state: RunState
     rows: list[Any]
     files: list[str]
 
@@ -131,10 +131,10 @@ def execute(run: Run, command: str, progress: bool = True) -> Execution:
     try:
         with folder.lock():
             if not run.force and is_whole(folder, run.inputs):
-                return Execution(folder.path, State.SKIPPED, [], [])
+                return Execution(folder.path, RunState.SKIPPED, [], [])
             return _execute_held(run, folder, command, progress)
     except Busy:
-        return Execution(folder.path, State.BUSY, [], [])
+        return Execution(folder.path, RunState.BUSY, [], [])
 
 
 def run_folder(run: Run) -> RunFolder:
@@ -145,7 +145,7 @@ def run_folder(run: Run) -> RunFolder:
 
 def _execute_held(run: Run, folder: RunFolder, command: str, progress: bool) -> Execution:
     started = now()
-    Status(State.RUNNING, started).write(folder)
+    Status(RunState.RUNNING, started).write(folder)
     try:
         config = yaml.safe_dump(nested(run.settings), sort_keys=False, allow_unicode=True)
         write_whole(folder.path / CONFIG, config.encode())
@@ -158,12 +158,12 @@ def _execute_held(run: Run, folder: RunFolder, command: str, progress: bool) -> 
         names = [CONFIG, TRIALS, *recorded]
         folder.keep_only([*names, STATUS, MANIFEST])
         _manifest(run, folder, command, names, late).write(folder)
-        state = State.DONE if optimum.feasible else State.INFEASIBLE
+        state = RunState.DONE if optimum.feasible else RunState.INFEASIBLE
         Status(state, started, now()).write(folder)
         return Execution(folder.path, state, rows, [*names, MANIFEST, STATUS])
     except BaseException as error:
         interrupted = isinstance(error, KeyboardInterrupt)
-        state = State.INTERRUPTED if interrupted else State.FAILED
+        state = RunState.INTERRUPTED if interrupted else RunState.FAILED
         message = "" if interrupted else traceback.format_exc()
         with suppress(InputError):  # a full disk has no room for this, either
             Status(state, started, now(), message).write(folder)

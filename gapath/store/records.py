@@ -21,7 +21,7 @@ STATUS, MANIFEST, CONFIG, TRIALS = "status.json", "manifest.json", "config.yaml"
 """Names of the files that every run folder has."""
 
 
-class State(StrEnum):
+class RunState(StrEnum):
     """How far a run is; SKIPPED (it is whole) and BUSY (another works on it) only of executions."""
 
     RUNNING = "running"
@@ -34,7 +34,7 @@ class State(StrEnum):
     BUSY = "busy"
 
 
-WHOLE = (State.DONE, State.INFEASIBLE)
+WHOLE = (RunState.DONE, RunState.INFEASIBLE)
 """States of runs that were finished."""
 
 
@@ -147,7 +147,7 @@ class Status:
 
     Parameters
     ----------
-    state : State
+    state : RunState
         running, done, failed, interrupted or infeasible; unknown where none can be read.
     started : str
         When it began, as `now` gives it.
@@ -157,7 +157,7 @@ class Status:
         What went wrong.
     """
 
-    state: State
+    state: RunState
     started: str
     finished: str | None = None
     message: str = ""
@@ -184,11 +184,11 @@ class Status:
         try:
             content = _load(folder / STATUS)
         except InputError as error:
-            return cls(State.UNKNOWN, "", message=str(error))
+            return cls(RunState.UNKNOWN, "", message=str(error))
         given = content.get("state")
-        state = State(given) if given in list(State) else State.UNKNOWN
-        if state is State.RUNNING and not is_locked(folder / LOCK):
-            state = State.INTERRUPTED
+        state = RunState(given) if given in list(RunState) else RunState.UNKNOWN
+        if state is RunState.RUNNING and not is_locked(folder / LOCK):
+            state = RunState.INTERRUPTED
         texts = [str(content.get(name) or "") for name in ("started", "finished", "message")]
         return cls(state, texts[0], texts[1] or None, texts[2].strip())
 
@@ -225,7 +225,7 @@ class RunRecord:
         return f"{self.folder.parent.name}/{self.folder.name}"
 
     @property
-    def state(self) -> State:
+    def state(self) -> RunState:
         """How far it is."""
         return self.status.state
 

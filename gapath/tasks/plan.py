@@ -15,8 +15,10 @@ from gapath.grid import GridMap
 from gapath.planning.path import octile_length
 from gapath.planning.shortest_path import shortest_path
 from gapath.planning.simulation import TimedPlan, plan_trials
-from gapath.problem import Particular, Plan, Planner, Problem
+from gapath.problem import Particular, Plan, Planner, PlanStatus, Problem
 from gapath.task import Batch, Row, Trial, head, metrics
+
+_INFEASIBLE = PlanStatus.INFEASIBLE.name.lower()
 
 
 @dataclass(frozen=True)
@@ -141,7 +143,7 @@ class Task:
             "trials": len(rows),
             "found": f"{len(found)} ({100 * len(found) / len(rows):.1f} %)",
         }
-        if rows[0].status != "infeasible":
+        if rows[0].status != _INFEASIBLE:
             lines["optimal cost"] = f"{rows[0].optimal_cost:g}"
             lines["median time"] = _median_time(rows)
         if found:
@@ -157,7 +159,7 @@ class Task:
 
     def line(self, rows: list[PlanRow]) -> str:
         """Sum trials up in one line."""
-        if rows[0].status == "infeasible":
+        if rows[0].status == _INFEASIBLE:
             return _no_path(rows[0])
         found = sum(row.feasible for row in rows)
         return f"{found} of {len(rows)} found, median {_median_time(rows)}"
@@ -165,7 +167,7 @@ class Task:
 
 def _effort(row: PlanRow) -> dict[str, object]:
     """Tell what applies: a genetic algorithm has epochs, a graph search has expansions."""
-    if row.status == "infeasible":
+    if row.status == _INFEASIBLE:
         return {"reason": _no_path(row)}
     lines: dict[str, object] = {}
     if not math.isinf(row.cost):  # a search that counts no obstacles has no cost without a path

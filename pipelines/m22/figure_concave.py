@@ -12,6 +12,7 @@ from gapath.pipelines.page.map_picture import draw_lines, draw_picture
 from gapath.pipelines.page.section import Figure, Section, Table
 from gapath.pipelines.papers.names import label, rank
 from gapath.pipelines.reading.logs import read_logs
+from gapath.problem import PlanStatus
 from gapath.store.records import RunRecord
 
 TASK = "plan"
@@ -59,7 +60,9 @@ def _table(trials: pd.DataFrame) -> Table:
     rows = summarise_by(trials, ["map", "map_source", "planner"])
     lengths = trials.groupby(["map", "planner"])["line_length"].mean()
     rows["f"] = [lengths[row["map"], row["planner"]] for _, row in rows.iterrows()]
-    ends = trials.groupby(["map", "planner"])["status"].agg(lambda s: (s == "infeasible").mean())
+    ends = trials.groupby(["map", "planner"])["status"].agg(
+        lambda s: (s == PlanStatus.INFEASIBLE.name.lower()).mean()
+    )
     rows["infeasible"] = [ends[row["map"], row["planner"]] for _, row in rows.iterrows()]
     shown = [
         {

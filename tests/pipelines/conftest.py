@@ -18,7 +18,7 @@ from gapath.store.records import (
     FileEntry,
     Manifest,
     RunRecord,
-    State,
+    RunState,
     Status,
     find_runs,
 )
@@ -74,7 +74,7 @@ def sign(folder: Path, manifest: Manifest | None = None, **changes: Any) -> None
 
 
 def write_status(folder: Path, state: str, date: str = DATE, text: str = "") -> None:
-    Status(State(state), date, date, text).write(RunFolder(folder))
+    Status(RunState(state), date, date, text).write(RunFolder(folder))
 
 
 def write_run(
@@ -93,7 +93,7 @@ def record_of(
     """Make what is known of a run without its folder, its settings as if they had been read."""
     place = ("mine", key)
     manifest = manifest_of(Method(preset, changes), task, place, **known)
-    run = RunRecord(Path(*place), Status(State.DONE, DATE, DATE), manifest, "")
+    run = RunRecord(Path(*place), Status(RunState.DONE, DATE, DATE), manifest, "")
     vars(run)["settings"] = plan_settings(preset, changes)
     return run
 

@@ -7,7 +7,7 @@ import pytest
 from gapath.errors import InputError
 from gapath.pipelines.reading.listing import listing
 from gapath.pipelines.reading.logs import events_of, read_logs, run_start
-from gapath.store.records import State, find_runs
+from gapath.store.records import RunState, find_runs
 
 from .conftest import collect, sign, write_status
 
@@ -64,7 +64,7 @@ def test_running_with_a_held_lock_is_running(run):
 @pytest.mark.parametrize("said", ["finished", "", None, 1, ["done"]])
 def test_a_state_that_is_none_is_unknown_and_so_not_used(run, said):
     (run / "status.json").write_text(json.dumps({"state": said, "started": "", "message": ""}))
-    assert (only(run).state, only(run).fault) == (State.UNKNOWN, "unknown")
+    assert (only(run).state, only(run).fault) == (RunState.UNKNOWN, "unknown")
 
 
 def test_no_status_is_unknown(run):
