@@ -82,7 +82,7 @@ class Navigator:
         good = len(interval) == 2 and 1 <= interval[0] <= interval[1] <= 10**6
         check("retreat_interval", good, "[least, most] with 1 <= least <= most <= 1000000")
         check("return_penalty", 0 <= self.return_penalty <= 1000, "a number in [0, 1000]")
-        some = isinstance(self.replan, list) and len(self.replan) > 0
+        some = isinstance(self.replan, list | tuple) and len(self.replan) > 0
         check("replan", some, "a list of at least one planner")
         named = {"retreat": self.retreat, "explore": self.explore}
         named |= {f"replan[{i}]": planner for i, planner in enumerate(self.replan)}

@@ -137,14 +137,18 @@ def test_all_trials_are_collected_failures_too(outputs):
     assert failed["optimality_ratio"].isna().all()
 
 
-def test_the_newest_run_of_a_setting_counts_alone(tmp_path, make_run):
+@pytest.mark.parametrize(("code", "kept", "other"), [("of today", 7, "a"), ("before", 3, "b")])
+def test_of_a_setting_the_most_trials_of_the_newest_code_count_alone(
+    code, kept, other, tmp_path, make_run
+):
     for key, date, n in [("b", "2026-01-02T00:00", 7), ("a", "2026-01-03T00:00", 3)]:
-        make_run(tmp_path, "table1", "kg18_test1", "ga1", n=n, log=False, date=date, key=key)
+        run = make_run(tmp_path, "table1", "kg18_test1", "ga1", n=n, log=False, date=date, key=key)
+        change(run, versions={"code": code if key == "b" else "of today"})
     make_run(tmp_path, "table1", "kg18_test1", "ga1", n=4, seed=1, log=False)
     frame, skipped = plans(tmp_path)
-    assert sorted(frame.groupby("seed").size()) == [3, 4]
-    assert [run for run, _ in skipped] == ["table1/b"]
-    assert "table1/a" in skipped[0].reason
+    assert sorted(frame.groupby("seed").size()) == sorted([kept, 4])
+    assert [run for run, _ in skipped] == [f"table1/{other}"]
+    assert f"table1/{'b' if other == 'a' else 'a'} counts" in skipped[0].reason
 
 
 def test_a_broken_newer_run_does_not_hide_a_whole_older_one(tmp_path, make_run):
