@@ -200,8 +200,8 @@ def read_description(path: str) -> Description:
     InputError
         If it is no YAML mapping, or a key is missing or of a wrong type or range.
     """
-    named = Path(path).suffix.lower() in SUFFIXES
-    require(named, "map.path", path, "the map's YAML file, which names its image")
+    is_image = Path(path).suffix.lower() in (".pgm", ".png", ".ppm")
+    require(not is_image, path, "an image", "the map's YAML file, which names it")
     text = read_text(path, MAX_YAML_BYTES)
     try:
         content = yaml.safe_load(text)
