@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gapath.errors import InputError
 from gapath.kernels.rng import stream
 from gapath.planning.flaw import flaw
 from gapath.planning.threads import in_order
@@ -52,6 +53,8 @@ def plan_once(problem: Problem, planner: Planner, seed: int, trial: int = 0) -> 
 
     Raises
     ------
+    InputError
+        If the planner returns no `Plan`.
     RuntimeError
         If the planner returns a path that is none.
     """
@@ -59,11 +62,13 @@ def plan_once(problem: Problem, planner: Planner, seed: int, trial: int = 0) -> 
     if not planner.exact and not problem.map.joined(*ends, rule):
         return Plan(PlanStatus.INFEASIBLE)
     plan = planner.plan(problem, stream(seed, trial))
-    _check(problem, plan, seed, trial)
+    _check(problem, planner, plan, seed, trial)
     return plan
 
 
-def _check(problem: Problem, plan: Plan, seed: int, trial: int) -> None:
+def _check(problem: Problem, planner: Planner, plan: Plan, seed: int, trial: int) -> None:
+    if not isinstance(plan, Plan):  # its module is not where it shows
+        raise InputError(f"{type(planner).__module__}, plan", plan, "a gapath.problem.Plan")
     if plan.feasible and (wrong := flaw(problem, plan.path, plan.cost)):
         raise RuntimeError(f"the planner's path for seed {seed}, trial {trial}: {wrong}")
 
@@ -94,6 +99,8 @@ def plan_trials(
 
     Raises
     ------
+    InputError
+        If the planner returns no `Plan`.
     RuntimeError
         If the planner returns a path that is none.
     """
@@ -118,7 +125,7 @@ def plan_trials(
     pieces = batches(trials, threads, many.most_at_once if many else 1)
     for answers in in_order(work, pieces, threads):
         for answer in answers:
-            _check(problem, answer.plan, seed, answer.number)
+            _check(problem, planner, answer.plan, seed, answer.number)
             yield answer
 
 

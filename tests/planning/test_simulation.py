@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strategies import planner
 
+from gapath.errors import InputError
 from gapath.grid import GridMap
 from gapath.mapio.reconstructed import generate
 from gapath.planning.shortest_path import shortest_path
@@ -41,6 +42,15 @@ class Counter:
 def test_a_path_that_is_none_is_found_out():
     with pytest.raises(RuntimeError, match="seed 3, trial 0: two successive fields"):
         list(plan_trials(OPEN, shortest_path(OPEN), Liar(), 3, 1))
+
+
+def test_a_planner_that_gives_no_plan_is_named():
+    class Silent:
+        def plan(self, problem, stream):
+            return None
+
+    with pytest.raises(InputError, match=r"^test_simulation, plan: got None, expected a gapath"):
+        list(plan_trials(OPEN, shortest_path(OPEN), Silent(), 3, 1))
 
 
 def test_every_trial_has_its_own_stream_and_time():
