@@ -130,7 +130,7 @@ def execute(run: Run, command: str, progress: bool = True) -> Execution:
     folder.create()
     try:
         with folder.lock():
-            if not run.force and is_whole(folder, run.inputs):
+            if not run.force and is_whole(folder):
                 return Execution(folder.path, RunState.SKIPPED, [], [])
             return _execute_held(run, folder, command, progress)
     except Busy:
@@ -229,7 +229,7 @@ def _manifest(
 ) -> Manifest:
     return Manifest(
         key=folder.path.name,
-        setting=setting_hash(run.settings, run.problem, {**run.method_inputs, **late}),
+        setting=setting_hash(run.settings, run.problem, run.method_inputs),
         experiment=run.experiment,
         task=run.task.name,
         map=run.problem.map.name,
@@ -244,7 +244,8 @@ def _manifest(
         trials=run.trials,
         command=command,
         map_inputs=dict(run.map_inputs),
-        method_inputs={**run.method_inputs, **late},
+        method_inputs=dict(run.method_inputs),
+        late_inputs=dict(late),
         versions=versions(),
         files={
             name: FileEntry(folder.sha256(name), (folder.path / name).stat().st_size)

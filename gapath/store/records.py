@@ -80,7 +80,10 @@ class Manifest:
     versions : mapping of str to str
         Versions of gapath and of what it stands on.
     map_inputs, method_inputs : mapping of str to str
-        The files that the map and the method were made from, or read later: path -> SHA-256.
+        The files that the map and the method were made from: path -> SHA-256.
+    late_inputs : mapping of str to str
+        Those that were read only while trials ran: no part of what was tried, since a library may
+        read them once a process, but the run is done anew where one has changed.
     files : mapping of str to FileEntry
         All files but the manifest and the status.
     """
@@ -103,6 +106,7 @@ class Manifest:
     versions: Mapping[str, str]
     map_inputs: Mapping[str, str]
     method_inputs: Mapping[str, str]
+    late_inputs: Mapping[str, str]
     files: Mapping[str, FileEntry]
 
     def write(self, folder: RunFolder) -> None:

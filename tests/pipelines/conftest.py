@@ -51,7 +51,8 @@ def manifest_of(method: Method, task: str, place: tuple[str, str], **known: Any)
     experiment, key = place
     values = {
         "map": "kg18_test1", "map_instance": 0, "map_digest": "0", "start": "(0, 0)",
-        "target": "(9, 9)", "map_inputs": {}, "method_inputs": {}, "seed": 0, "trials": 1, **known,
+        "target": "(9, 9)", "map_inputs": {}, "method_inputs": {}, "late_inputs": {},
+        "seed": 0, "trials": 1, **known,
     }  # fmt: skip
     tried = (experiment, values["map"], values["map_instance"], method.name, values["seed"])
     return Manifest(

@@ -23,7 +23,7 @@ from gapath.recorders.mcap import read_events
 from gapath.runs import config
 from gapath.runs.experiment import execute, replay_events
 from gapath.runs.naming import Method
-from gapath.store import keys, runfolder, whole
+from gapath.store import keys, records, runfolder, whole
 from gapath.store.settings import flatten
 from gapath.tasks.plan import Task as PlanTask
 
@@ -124,6 +124,8 @@ def test_a_file_that_is_read_only_while_trials_run_is_compared(tmp_path):
     path.write_text("1")
     run = replace(make_run(tmp_path / "out", trials=1), task=PlanTask(ReadsLate(path)))
     assert [execute(run, "test").state for _ in range(2)] == ["done", "skipped"]
+    manifest = records.Manifest.read(execute(run, "test").folder)
+    assert (list(manifest.late_inputs), manifest.method_inputs) == ([str(path)], {})
     path.write_text("2")
     assert [execute(run, "test").state for _ in range(2)] == ["done", "skipped"]
 
@@ -151,7 +153,7 @@ def test_a_killed_run_leaves_nothing_that_looks_whole(tmp_path):
     assert not (folder / "run.mcap").exists()
     assert not (folder / "manifest.json").exists()
     with runfolder.RunFolder(folder).lock():  # nobody holds it: the run is dead
-        assert not whole.is_whole(runfolder.RunFolder(folder), {})
+        assert not whole.is_whole(runfolder.RunFolder(folder))
     saved = tmp_path / "saved.mcap"
     assert log_cli.main(["salvage", str(folder / "run.mcap.part"), "-o", str(saved)]) == 0
     assert sum(1 for _ in read_events(saved)) > 3
