@@ -3,16 +3,16 @@
 numba's own cache does not notice that a function called from another file was edited,
 so the folder is keyed by a hash of every file that holds kernels: gapath's own, and those of the
 package that a function belongs to. Nor does it notice a damaged file, whose machine code would end
-the process: here each file begins with a hash of the rest, and one that does not fit counts as
-none. What cannot be written, to a full disk for example, is compiled anew in each process.
+the process: here a hash stands behind each file, and one that does not fit counts as none. What
+cannot be written, to a full disk for example, is compiled anew in each process.
 """
 
 import hashlib
+import io
 import os
-import pickle
 import sys
-from collections.abc import Callable, Iterable
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
 from functools import cache, partial
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar, overload
@@ -65,11 +65,11 @@ def _cache_folder(package: str) -> Path | None:
 
 
 class _Files(caching.IndexDataCacheFile):  # type: ignore[misc]
-    """A function's files: an index, signature -> name, and one with the code for each signature.
+    """A function's files, as numba has them: an index, and one with the code for each signature.
 
-    Each file is the SHA-256 of the rest and of numba's version, and the rest: a pickle. The one
-    with code says what signature it is for: an index that was lost is begun anew, and until its
-    first file is replaced that would be another's code.
+    Behind each stands the SHA-256 of it and of numba's version: numba reads none that does not
+    fit. The one with code says what signature it is for: an index that was lost is begun anew, and
+    until its first file is replaced that would be another's code.
     """
 
     def load(self, key: object) -> Any:
@@ -81,34 +81,31 @@ class _Files(caching.IndexDataCacheFile):  # type: ignore[misc]
         """Save it; raises OSError if it cannot be written."""
         super().save(key, (key, data))
 
-    def _load_index(self) -> dict[Any, str]:
-        stamp, names = self._read(self._index_path) or (None, {})
-        return names if stamp == self._source_stamp else {}
-
-    def _save_index(self, names: dict[Any, str]) -> None:
-        self._write(self._index_path, (self._source_stamp, names))
+    def _load_index(self) -> Any:
+        return super()._load_index() if _is_whole(self._index_path) else {}
 
     def _load_data(self, name: str) -> Any:
-        return self._read(self._data_path(name))
+        path = self._data_path(name)
+        return super()._load_data(name) if _is_whole(path) else None
 
-    def _save_data(self, name: str, data: object) -> None:
-        self._write(self._data_path(name), data)
+    @contextmanager
+    def _open_for_write(self, path: str) -> Iterator[io.BytesIO]:
+        with super()._open_for_write(path) as file:
+            content = io.BytesIO()
+            yield content
+            file.write(content.getvalue() + _seal(content.getvalue()))
 
-    def _read(self, path: str) -> Any:
-        try:
-            content = Path(path).read_bytes()
-        except OSError:
-            return None
-        seal, content = content[:_SEAL], content[_SEAL:]
-        return pickle.loads(content) if seal == self._seal(content) else None  # noqa: S301
 
-    def _write(self, path: str, data: object) -> None:
-        content = self._dump(data)
-        with self._open_for_write(path) as file:
-            file.write(self._seal(content) + content)
+def _is_whole(path: str) -> bool:
+    try:
+        content = Path(path).read_bytes()
+    except OSError:
+        return False
+    return content[-_SEAL:] == _seal(content[:-_SEAL])
 
-    def _seal(self, content: bytes) -> bytes:
-        return hashlib.sha256(numba.__version__.encode() + content).digest()
+
+def _seal(content: bytes) -> bytes:
+    return hashlib.sha256(numba.__version__.encode() + content).digest()
 
 
 _SEAL = hashlib.sha256().digest_size

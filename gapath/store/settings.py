@@ -18,9 +18,6 @@ from gapath.events import Settings
 
 Value: TypeAlias = str | int | float | bool | None
 
-_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-"""libyaml's, where there is one: a report reads a thousand files."""
-
 _STEP = re.compile(r"\[(\d*)\]|\.?([^.\[\]]+)|\.$")
 
 
@@ -202,7 +199,7 @@ def read_settings(path: Path) -> dict[str, Value]:
         If it cannot be read, or holds something else.
     """
     try:
-        content = yaml.load(path.read_text("utf-8"), _LOADER)  # noqa: S506
+        content = yaml.safe_load(path.read_text("utf-8"))
     except (OSError, ValueError, yaml.YAMLError) as error:
         raise InputError(path.name, type(error).__name__, "readable YAML") from error
     require(isinstance(content, dict), path.name, type(content).__name__, "a mapping of settings")
