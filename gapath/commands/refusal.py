@@ -82,7 +82,7 @@ def _found(error: Exception, words: Sequence[str], sweep: bool) -> InputError | 
     if isinstance(error, MissingConfigException) and "/" in (error.missing_cfg_file or ""):
         group, _, name = error.missing_cfg_file.rpartition("/")
         with _hydra():
-            names = error.options or GlobalHydra.instance().config_loader().get_group_options(group)
+            names = GlobalHydra.instance().config_loader().get_group_options(group)
         return InputError(group, name, one_of(name, names))
     with _hydra():
         if isinstance(error, OverrideParseException):

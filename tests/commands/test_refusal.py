@@ -12,6 +12,7 @@ ROOT += "planner, recorder, seed, task, threads, trials"
 
 CASES = {
     # A name that there is not.
+    "experiment=unseen/movingai/arenaa": r"experiment/unseen/movingai: got arenaa, .* arena\?",
     "planner=ga33": f"planner: got ga33, expected {MAPS}; did you mean ga3\\?",
     "map=kg18_tset3": rf"map: got kg18_tset3, expected {MAPS}; did you mean kg18_test\d\?",
     "map=": f"map: got '', expected {MAPS}",
