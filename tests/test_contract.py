@@ -19,9 +19,9 @@ from gapath.planning.path import polyline_length
 from gapath.planning.shortest_path import shortest_path
 from gapath.planning.simulation import plan_once, plan_trials
 from gapath.problem import CornerCutting, Plan, Planner, PlanStatus, Problem
-from gapath.runs import config
-from gapath.runs.experiment import execute, run_started
-from gapath.runs.naming import Method
+from gapath.running import config
+from gapath.running.experiment import execute, run_started
+from gapath.running.naming import Method
 from gapath.store.settings import flatten
 from gapath.task import Batch, Task, check_events, columns, find_task
 from gapath.tasks.plan import Task as PlanTask

@@ -23,7 +23,7 @@ from gapath.commands import run as cli
 from gapath.mapio.movingai import read_scenario
 from gapath.pipelines.report import cli as report_cli
 from gapath.planning.path import octile_length
-from gapath.runs import config
+from gapath.running import config
 from gapath.task import find_task
 
 ROOT = Path(__file__).parents[1]

@@ -21,9 +21,9 @@ from gapath.grid import GridMap
 from gapath.mapio.reconstructed import CLASSES
 from gapath.problem import Problem
 from gapath.recorders import mcap
-from gapath.runs.config import Run
-from gapath.runs.experiment import execute
-from gapath.runs.naming import Method
+from gapath.running.config import Run
+from gapath.running.experiment import execute
+from gapath.running.naming import Method
 from gapath.store.settings import flatten
 from gapath.tasks.plan import Task as PlanTask
 

@@ -196,7 +196,7 @@ def _verified(path: Path, kernels: str) -> int:
 
 
 def _compared(path: Path, kernels: str) -> tuple[int, str]:
-    from gapath.runs.experiment import replay_events  # compiles kernels: only where it is needed
+    from gapath.running.experiment import replay_events  # compiles kernels: only where it is needed
 
     logged = mcap.read_events(path)
     run = next(logged)

@@ -20,7 +20,7 @@ from omegaconf.errors import OmegaConfBaseException
 
 from gapath.discovery import OFFERS, with_setting
 from gapath.errors import InputError, did_you_mean, one_of
-from gapath.runs.config import conf_folder
+from gapath.running.config import conf_folder
 
 BAD_CONFIGURATION = (InputError, HydraException, OmegaConfBaseException)
 """What is raised where a command line or a configuration is wrong."""

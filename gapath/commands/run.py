@@ -24,8 +24,8 @@ import gapath
 from gapath.commands.refusal import BAD_CONFIGURATION, arguments, explain
 from gapath.discovery import component_of, conf_packages, kinds, yaml_names
 from gapath.errors import InputError, require
-from gapath.runs.config import HOW, Run, conf_folder, make_run
-from gapath.runs.experiment import Execution, execute, run_folder
+from gapath.running.config import HOW, Run, conf_folder, make_run
+from gapath.running.experiment import Execution, execute, run_folder
 from gapath.store.records import RunState
 from gapath.store.runfolder import RunFolder
 from gapath.task import find_task

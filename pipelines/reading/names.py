@@ -9,7 +9,7 @@ from collections import defaultdict
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from pathlib import Path
 
-from gapath.runs.naming import Method, with_changes
+from gapath.running.naming import Method, with_changes
 from gapath.store.inputs import Inputs, contents, without_paths
 from gapath.store.records import RunRecord
 from gapath.store.settings import Value, tabular

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import pandas as pd
 
 from gapath.events import Settings
-from gapath.runs.naming import Method
+from gapath.running.naming import Method
 from gapath.store.records import RunRecord
 
 _OWN: Settings = {"corner_cutting": "no_diagonals"}

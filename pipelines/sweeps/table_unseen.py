@@ -13,7 +13,7 @@ from gapath.pipelines.numbers.summary import summarise_by
 from gapath.pipelines.numbers.text import NOTHING, number, percent, percent_range, span
 from gapath.pipelines.page.section import Section, Table
 from gapath.pipelines.papers.names import label
-from gapath.runs.naming import Method, map_name
+from gapath.running.naming import Method, map_name
 from gapath.store.records import RunRecord
 from gapath.store.settings import nested
 

@@ -101,7 +101,7 @@ def cut(log):
 def replay(monkeypatch):
     """Let the run that is done again be whatever a test wants."""
     module = SimpleNamespace(replay_events=lambda run, kernels: list(run_events())[1:])
-    monkeypatch.setitem(sys.modules, "gapath.runs.experiment", module)
+    monkeypatch.setitem(sys.modules, "gapath.running.experiment", module)
     return module
 
 

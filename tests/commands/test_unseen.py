@@ -18,7 +18,7 @@ from gapath.mapio.movingai import read_scenario
 from gapath.mapio.rosmap import Reader
 from gapath.pipelines.report.report import make_report
 from gapath.problem import Problem
-from gapath.runs.config import conf_folder
+from gapath.running.config import conf_folder
 from gapath.survey.obstacle_image import Clearance, dilate
 
 ROOT = Path(__file__).parents[2]

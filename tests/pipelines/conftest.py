@@ -9,7 +9,7 @@ import pytest
 import yaml
 
 from gapath.pipelines.reading.collect import Collected, read_trials
-from gapath.runs.naming import Method
+from gapath.running.naming import Method
 from gapath.store.records import (
     CONFIG,
     MANIFEST,

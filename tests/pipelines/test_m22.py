@@ -20,9 +20,9 @@ from gapath.pipelines.papers import m22
 from gapath.pipelines.report.report import make_report
 from gapath.problem import Problem
 from gapath.recorders import mcap
-from gapath.runs.config import Run
-from gapath.runs.experiment import execute
-from gapath.runs.naming import Method
+from gapath.running.config import Run
+from gapath.running.experiment import execute
+from gapath.running.naming import Method
 from gapath.store.records import find_runs
 from gapath.tasks.plan import Task as PlanTask
 

@@ -16,9 +16,9 @@ from gapath.pipelines.s04 import table_sweep as table_s04_sweep
 from gapath.pipelines.s04.runs import other_changes, planner_of, with_form
 from gapath.problem import CornerCutting, Problem
 from gapath.recorders import mcap
-from gapath.runs.config import Run
-from gapath.runs.experiment import execute
-from gapath.runs.naming import Method
+from gapath.running.config import Run
+from gapath.running.experiment import execute
+from gapath.running.naming import Method
 from gapath.store.records import find_runs
 from gapath.store.settings import nested
 from gapath.tasks.plan import Task as PlanTask

@@ -16,9 +16,9 @@ from gapath.problem import PlanStatus, Problem
 from gapath.recorders import mcap, rerun
 from gapath.recorders.mcap.cdr import record
 from gapath.recorders.mcap.messages import event
-from gapath.runs.config import Run
-from gapath.runs.experiment import execute
-from gapath.runs.naming import Method
+from gapath.running.config import Run
+from gapath.running.experiment import execute
+from gapath.running.naming import Method
 from gapath.tasks.plan import Task as PlanTask
 
 

@@ -5,7 +5,7 @@
   The targets on map 1 are 2 ms for kg18 and 1 ms for kg18_fast. "paper / drive" is 1.4 s, where
   the paper's axis for map 1 begins, by ours. "outside planners" is the share of kg18's time that
   its planners' `plan` did not take.
-- Logs: 100 drives a map with kg18 through `gapath.runs.experiment.execute`, wall seconds in one
+- Logs: 100 drives a map with kg18 through `gapath.running.experiment.execute`, wall seconds in one
   process, run folder with `run.mcap` included; "rest" is what is not driving: the log, metrics,
   tables, files. The target for all four is 20 s on two cores.
 - A recording: `trial-0.rrd` of 500 steps from their events, Rerun imported (targets 0.3 s, 1 MB).
@@ -31,9 +31,9 @@ from gapath.events import Outcome
 from gapath.kernels.rng import Stream
 from gapath.problem import Plan, Planner, Problem
 from gapath.recorders import mcap, rerun
-from gapath.runs.config import Run, conf_folder
-from gapath.runs.experiment import execute, run_started
-from gapath.runs.naming import Method
+from gapath.running.config import Run, conf_folder
+from gapath.running.experiment import execute, run_started
+from gapath.running.naming import Method
 from gapath.store.settings import flatten
 from gapath.tasks.drive import Task as DriveTask
 from gapath.tasks.drive import usual_limit

@@ -18,9 +18,9 @@ from gapath.kernels.rng import stream
 from gapath.planning.shortest_path import shortest_path
 from gapath.planning.simulation import TimedPlan
 from gapath.recorders import mcap
-from gapath.runs.config import Run
-from gapath.runs.experiment import run_started
-from gapath.runs.naming import Method
+from gapath.running.config import Run
+from gapath.running.experiment import run_started
+from gapath.running.naming import Method
 from gapath.tasks.plan import Task as PlanTask
 from gapath.tasks.plan import trial_events
 

@@ -1,6 +1,6 @@
 """Table 1 as a sweep, every epoch logged: how long on two threads, and what takes the time on one.
 
-1000 seeds x 12 settings through `gapath.runs.experiment.execute`, in wall seconds past start-up,
+1000 seeds x 12 settings through `gapath.running.experiment.execute`, in wall seconds past start-up,
 run folder with `run.mcap` included. "total" is with ``threads=2``, and its target is 12 s for all.
 On one thread every setting runs a second time without a recorder: "logging" is the difference,
 "rest" is what else is not planning (checks, metrics, tables, files).
@@ -15,9 +15,9 @@ from gapath.discovery import yaml_values
 from gapath.events import Recorder
 from gapath.problem import Problem
 from gapath.recorders import mcap
-from gapath.runs.config import Run
-from gapath.runs.experiment import execute
-from gapath.runs.naming import Method
+from gapath.running.config import Run
+from gapath.running.experiment import execute
+from gapath.running.naming import Method
 from gapath.store.settings import flatten
 from gapath.tasks.plan import Task as PlanTask
 

@@ -4,7 +4,7 @@ import pytest
 from hydra import compose, initialize_config_dir
 from omegaconf import OmegaConf
 
-from gapath.runs.config import conf_folder, make_run
+from gapath.running.config import conf_folder, make_run
 from gapath.store.keys import run_key
 from gapath.store.settings import text_of
 

@@ -16,7 +16,7 @@ from gapath.events import Recorder, Settings
 from gapath.grid import GridMap
 from gapath.planning.acceleration import with_kernels
 from gapath.problem import CornerCutting, Problem
-from gapath.runs.naming import Method, map_name, method_of
+from gapath.running.naming import Method, map_name, method_of
 from gapath.store.inputs import Inputs, watched
 from gapath.store.settings import flatten, nested
 from gapath.task import Task, check_events, columns, find_task

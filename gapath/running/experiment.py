@@ -14,7 +14,7 @@ from gapath.errors import InputError
 from gapath.events import Event, RunFinished, RunStarted
 from gapath.planning.acceleration import AUTO, with_kernels
 from gapath.problem import Plan
-from gapath.runs.config import Run, task_of
+from gapath.running.config import Run, task_of
 from gapath.store.durable import named, write_whole
 from gapath.store.inputs import Inputs, watched
 from gapath.store.keys import run_key, setting_hash, versions

@@ -4,7 +4,7 @@ import pytest
 
 from gapath.components import build
 from gapath.discovery import yaml_values
-from gapath.runs.naming import map_name, method_of
+from gapath.running.naming import map_name, method_of
 from gapath.tasks import drive as driving
 
 

@@ -20,9 +20,9 @@ from gapath.mapio.reconstructed import Reader, generate
 from gapath.planning.shortest_path import shortest_path
 from gapath.problem import Problem
 from gapath.recorders.mcap import read_events
-from gapath.runs import config
-from gapath.runs.experiment import execute, replay_events
-from gapath.runs.naming import Method
+from gapath.running import config
+from gapath.running.experiment import execute, replay_events
+from gapath.running.naming import Method
 from gapath.store import keys, records, runfolder, whole
 from gapath.store.settings import flatten
 from gapath.tasks.plan import Task as PlanTask
