@@ -11,6 +11,7 @@ from tqdm import tqdm
 
 from gapath.discovery import kinds
 from gapath.errors import InputError, require
+from gapath.pipelines.reading.counted import superseded
 from gapath.pipelines.reading.names import told_apart
 from gapath.store.records import CONFIG, TRIALS, RunRecord
 from gapath.store.runfolder import RunFolder
@@ -44,9 +45,7 @@ class Collected(NamedTuple):
 def read_trials(runs: Iterable[RunRecord]) -> Collected:
     """Read the trials of runs.
 
-    Of several runs of the same experiment, map, method and seed (made by other versions, or
-    with another number of trials) only the newest counts: pooled, its trials would be
-    counted twice.
+    Of several runs of one setting only one counts (`superseded`).
 
     Parameters
     ----------
@@ -63,11 +62,14 @@ def read_trials(runs: Iterable[RunRecord]) -> Collected:
         The runs that the trials come from, under names that tell them apart.
     """
     frames: dict[str, list[pd.DataFrame]] = {task: [] for task in kinds("task")}
-    used, skipped = [], []
-    kept, older = _newest(runs)
-    skipped += [Skipped(run.name, run.fault) for run in kept if run.fault]
-    skipped += [Skipped(run.name, f"{new} counts, of the same setting") for run, new in older]
-    for run in tqdm([run for run in kept if not run.fault], "runs", disable=None):
+    used: list[RunRecord] = []
+    skipped: list[Skipped] = []
+    runs = sorted(runs, key=lambda run: run.name)
+    older = superseded(runs)
+    skipped += [Skipped(run.name, run.fault) for run in runs if run.fault]
+    skipped += [Skipped(run.name, f"{new.name} counts, of the same setting") for run, new in older]
+    left_out = {each.run for each in skipped}
+    for run in tqdm([run for run in runs if run.name not in left_out], "runs", disable=None):
         try:
             frames[run.known.task].append(_trials(run))
             used.append(run)
@@ -90,26 +92,6 @@ def _joined(task: str, frames: list[pd.DataFrame], runs: Sequence[RunRecord]) ->
             for column, name in names.items()
         }
     )
-
-
-def _newest(runs: Iterable[RunRecord]) -> tuple[list[RunRecord], list[tuple[RunRecord, str]]]:
-    """Split runs into those to read and the superseded ones with the name of their successor."""
-    runs = sorted(runs, key=lambda run: (run.date, run.name), reverse=True)
-    newest: dict[str, RunRecord] = {}
-    for run in runs:
-        if not run.fault:
-            first = newest.setdefault(run.known.setting, run)
-            more = run.known.trials > first.known.trials  # the same streams, and others
-            if more and run.known.versions == first.known.versions:
-                newest[run.known.setting] = run
-    kept, older = [], []
-    for run in runs:
-        first = run if run.fault else newest[run.known.setting]
-        if first is run:
-            kept.append(run)
-        else:
-            older.append((run, first.name))
-    return sorted(kept, key=lambda run: run.name), older
 
 
 def _trials(run: RunRecord) -> pd.DataFrame:

@@ -1,0 +1,153 @@
+"""Runs as a table: a row a run, its settings and what came of it as columns."""
+
+import dataclasses
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import pandas as pd
+
+from gapath.errors import InputError
+from gapath.pipelines.reading.counted import superseded
+from gapath.pipelines.reading.query import connect, quoted, refusal
+from gapath.pipelines.reading.results import Results, results_of
+from gapath.store.records import RunRecord
+from gapath.store.settings import tabular
+
+_OWN = {
+    "experiment": "str", "task": "str", "map": "str", "map_instance": "Int64", "start": "str",
+    "target": "str", "method": "str", "preset": "str", "seed": "UInt64", "trials": "Int64",
+    "state": "str", "date": "str", "fault": "str", "superseded": "str",
+}  # fmt: skip
+"""Columns that every frame has, and their types."""
+
+_SAID = ("name", *_OWN)
+"""Settings that the columns say already."""
+
+
+def run_frame(runs: Sequence[RunRecord]) -> pd.DataFrame:
+    """Make a table of runs.
+
+    Parameters
+    ----------
+    runs : sequence of RunRecord
+        The runs.
+
+    Returns
+    -------
+    DataFrame
+        One row a run in the order given, the index `key` the name of its folder. Columns:
+
+        - experiment, task, map, map_instance, start, target, method, preset, seed, trials, state
+          and date, as the manifest and the status say; of a run without a manifest what is known;
+        - fault, why a run cannot be used, and superseded, the key of the run that counts in its
+          place; null of all others;
+        - every setting under its full name, lists as JSON, null where a run has none;
+        - success, the share of trials that succeeded, and for every numeric column of the trials
+          the mean over those where it is defined; null of runs that cannot be used.
+    """
+    runs = [checked(run) for run in runs]
+    keys = pd.Index([run.folder.name for run in runs], dtype="str", name="key")
+    newer = {id(run): other.folder.name for run, other in superseded(runs)}
+    own = [_own(run) | {"superseded": newer.get(id(run))} for run in runs]
+    settings = [_settings(run) for run in runs]
+    means = [_means(results_of(run)) if not run.fault else {} for run in runs]
+    columns: dict[str, Any] = {name: _column(own, name, kind) for name, kind in _OWN.items()}
+    columns |= {name: _column(settings, name) for name in _names(settings) if name not in _SAID}
+    columns |= {
+        name: _column(means, name, "float64")
+        for name in ("success", *_names(means))
+        if name not in columns
+    }
+    return pd.DataFrame(columns, index=keys)
+
+
+def chosen(frame: pd.DataFrame, where: str) -> pd.DataFrame:
+    """Choose rows of a table by a condition.
+
+    Parameters
+    ----------
+    frame : DataFrame
+        A table as `run_frame` gives it, or part of one.
+    where : str
+        An expression of DuckDB's SQL over the columns and `key`, names with dots as they are:
+        ``map = 'kg18_test3' and planner.population >= 80``.
+
+    Returns
+    -------
+    DataFrame
+        The rows that fulfil it, in their order.
+
+    Raises
+    ------
+    InputError
+        If it is no such expression, or names an unknown column: gives the nearest.
+    """
+    import duckdb
+    import pyarrow as pa
+
+    table = frame.reset_index()
+    text = quoted(where, table.columns, "where")
+    table = table.assign(**{_PLACE: range(len(table))})
+    with connect() as connection:
+        rows = connection.from_arrow(pa.Table.from_pandas(table, preserve_index=False))
+        try:
+            found = rows.filter(duckdb.SQLExpression(text)).select(_PLACE).fetchall()
+        except duckdb.Error as error:
+            raise refusal(error, where, list(table.columns), "where") from error
+    return frame.iloc[sorted(place for (place,) in found)]
+
+
+_PLACE = "place_of_the_row"
+
+
+def checked(run: RunRecord) -> RunRecord:
+    """Read a run's settings and results; one of which they cannot be read has that as its fault."""
+    try:
+        if not run.fault and run.settings is not None:
+            results_of(run)
+    except InputError as error:
+        return dataclasses.replace(run, fault=str(error))
+    return run
+
+
+def _own(run: RunRecord) -> dict[str, Any]:
+    known = vars(run.manifest) if run.manifest else {"experiment": run.folder.parent.name}
+    return {**known, "state": str(run.state), "date": run.date, "fault": run.fault or None}
+
+
+def _settings(run: RunRecord) -> Mapping[str, Any]:
+    try:
+        return tabular(run.settings)
+    except InputError:  # of a run that cannot be used: its fault says why
+        return {}
+
+
+def _means(results: Results) -> dict[str, float]:
+    means = {name: results.sums[name] / count for name, count in results.counts.items() if count}
+    return {"success": results.succeeded / results.trials, **means}
+
+
+def _names(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    return list(dict.fromkeys(name for row in rows for name in row))
+
+
+def _column(rows: Sequence[Mapping[str, Any]], name: str, kind: str = "") -> Any:
+    """Make a column of one type, null where a row lacks it."""
+    values = [row.get(name) for row in rows]
+    if kind:
+        return pd.array(values, dtype=kind)
+    kinds = {type(value) for value in values} - {type(None)}
+    if kinds == {bool}:
+        return pd.array(values, dtype="boolean")
+    if kinds == {int}:
+        try:
+            return pd.array(values, dtype="Int64")
+        except OverflowError:
+            kinds = {float}
+    if kinds and kinds <= {int, float}:
+        return pd.array(values, dtype="float64")
+    if kinds:
+        text = [value if isinstance(value, str | None) else json.dumps(value) for value in values]
+        return pd.array(text, dtype="str")
+    return pd.array(values, dtype="object")

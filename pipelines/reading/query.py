@@ -1,0 +1,127 @@
+"""Questions in SQL, asked of tables in memory or of run folders: nothing else can be read.
+
+The engine is DuckDB. A setting's name has dots, which SQL takes for something else: in a question
+it is written as it is, and quoted here.
+"""
+
+import re
+from collections.abc import Collection
+from typing import Any
+
+from gapath.errors import InputError, did_you_mean
+
+_DOTTED = re.compile(r"[^\W\d]\w*(?:\.\w+)+")
+_UNKNOWN = re.compile(r'(?:column|table) "([^"]+)" not found')
+
+
+def near(name: str, columns: Collection[str]) -> str:
+    """Ask for the nearest of some columns, also by the last part of their names.
+
+    Parameters
+    ----------
+    name : str
+        What was asked for.
+    columns : collection of str
+        What there is.
+
+    Returns
+    -------
+    str
+        Empty, or the end of a sentence.
+    """
+    ends = {column.rpartition(".")[2].lower(): column for column in reversed(list(columns))}
+    return did_you_mean(name, ends | {column.lower(): column for column in columns})
+
+
+def quoted(text: str, columns: Collection[str], where: str) -> str:
+    """Quote the names of columns that have dots, so that SQL takes each for one name.
+
+    Parameters
+    ----------
+    text : str
+        SQL. What stands in quotes or in a comment there is left alone.
+    columns : collection of str
+        The columns that there are.
+    where : str
+        Where the text stands, for messages.
+
+    Returns
+    -------
+    str
+        The same, with ``"planner.population"`` for ``planner.population``, also behind the name
+        of a table: ``runs."planner.population"``.
+
+    Raises
+    ------
+    InputError
+        If a name with dots is no column: gives the nearest.
+    """
+    import duckdb
+
+    known = {column.lower(): column for column in columns}
+    groups = {column.partition(".")[0] for column in known if "." in column}
+    data, parts, done = text.encode(), [], 0
+    names = (duckdb.token_type.identifier, duckdb.token_type.keyword)
+    for place, kind in duckdb.tokenize(text):  # places are counted in bytes
+        found = _DOTTED.match(data[place:].decode()) if kind in names and place >= done else None
+        if found is None:
+            continue
+        word = found.group()
+        group, _, rest = word.partition(".")
+        if word.lower() in known:
+            name = f'"{known[word.lower()]}"'
+        elif group.lower() in groups:
+            raise InputError(where, text, f"a column in place of {word}{near(word, columns)}")
+        else:
+            name = f'{group}."{known[rest.lower()]}"' if rest.lower() in known else word
+        parts += [data[done:place], name.encode()]
+        done = place + len(word.encode())
+    return b"".join([*parts, data[done:]]).decode()
+
+
+def refusal(error: Exception, text: str, columns: Collection[str], where: str) -> InputError:
+    """Say in one line what is wrong with a question.
+
+    Parameters
+    ----------
+    error : Exception
+        What DuckDB raised.
+    text : str
+        The question, as it was given.
+    columns : collection of str
+        The columns that there are.
+    where : str
+        Where the text stands.
+
+    Returns
+    -------
+    InputError
+        To raise; names an unknown column and the nearest.
+    """
+    message = str(error).partition("\n")[0]
+    unknown = _UNKNOWN.search(message)
+    if unknown:
+        name = unknown.group(1)
+        hint = near(name, columns)
+        if f'"{name}"' in text:
+            hint = f"{hint}; text stands in single quotes: '{name}'"
+        return InputError(where, text, f"a column in place of {name}{hint}")
+    return InputError(where, text, f"SQL that can be answered ({message})")
+
+
+def connect(**settings: Any) -> Any:
+    """Start DuckDB in memory, where no question can reach files or the network.
+
+    Parameters
+    ----------
+    **settings
+        More of DuckDB's own settings.
+
+    Returns
+    -------
+    duckdb.DuckDBPyConnection
+        A connection of its own.
+    """
+    import duckdb
+
+    return duckdb.connect(":memory:", config={"enable_external_access": False, **settings})
