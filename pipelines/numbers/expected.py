@@ -1,0 +1,115 @@
+"""What groups are expected to spend until a success, and by how much that differs."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gapath.pipelines.numbers.groups import Table
+from gapath.pipelines.numbers.pairwise import Difference
+from gapath.pipelines.numbers.statistics import expected_running_time
+
+FEWEST = 10
+"""Successes of a group below which its resamples are too wild for an interval."""
+
+_RESAMPLES, _PARTS = 1000, 2000
+
+
+@dataclass(frozen=True)
+class Expected:
+    """Expected amounts of groups, with those of resampled blocks.
+
+    Parameters
+    ----------
+    values : (groups,) float64
+        `expected_running_time` of each; infinite without a success.
+    successes : (groups,) int64
+        How many trials of each succeeded.
+    logs : (resamples, groups) float64
+        Logarithms of the same of blocks that were drawn with replacement, the same blocks for all
+        groups, so that pairs stay pairs; only of groups with `FEWEST` successes.
+    """
+
+    values: NDArray[np.float64]
+    successes: NDArray[np.int64]
+    logs: NDArray[np.float64]
+
+    def estimate(self, at: int) -> tuple[float | None, float | None, float | None, str]:
+        """Give a group's expected amount, its 95 % bootstrap interval, and what is missing."""
+        successes = int(self.successes[at])
+        if not successes:
+            return None, None, None, "no trial succeeded"
+        value = float(self.values[at])
+        if successes < FEWEST:
+            return value, None, None, f"{successes} successes, too few for an interval"
+        low, high = np.exp(np.quantile(self.logs[:, at], (0.025, 0.975)))
+        return value, float(low), float(high), ""
+
+    def difference(self, i: int, j: int) -> Difference:
+        """Compare two groups that have succeeded.
+
+        Parameters
+        ----------
+        i, j : int
+            The groups.
+
+        Returns
+        -------
+        Difference
+            The ratio of both with its bootstrap interval, and a test: the logarithm of the ratio
+            over its standard error among the resamples is normal (Efron and Tibshirani 1993).
+        """
+        from scipy.stats import norm
+
+        effect = float(self.values[i] / self.values[j])
+        result = Difference("bootstrap", effect=effect)
+        fewest = int(min(self.successes[i], self.successes[j]))
+        if fewest < FEWEST:
+            return result._replace(why=f"{fewest} successes, too few for a test")
+        ratios = self.logs[:, i] - self.logs[:, j]
+        low, high = np.exp(np.quantile(ratios, (0.025, 0.975)))
+        result = result._replace(low=float(low), high=float(high))
+        error = float(ratios.std(ddof=1))
+        if error < 1e-12:
+            return result._replace(p=1.0 if math.isclose(effect, 1) else 0.0)
+        return result._replace(p=float(2 * norm.sf(abs(math.log(effect)) / error)))
+
+
+def expected(spent: Table, success: Table) -> Expected:
+    """Give expected amounts of groups, and those of resampled blocks.
+
+    Parameters
+    ----------
+    spent : (blocks, groups) float64
+        What each trial spent; NaN where there is none.
+    success : (blocks, groups) float64
+        1 where it succeeded, else 0; NaN where there is none.
+
+    Returns
+    -------
+    Expected
+        Of more than 2000 blocks, that many batches of blocks are drawn instead.
+    """
+    spent, success = np.nan_to_num(spent), np.nan_to_num(success)
+    values = [
+        expected_running_time(column, found)
+        for column, found in zip(spent.T, success.T, strict=True)
+    ]
+    successes = success.sum(axis=0).astype(np.int64)
+    random = np.random.Generator(np.random.SFC64(0))
+    if len(spent) > _PARTS:
+        batch = random.permutation(len(spent)) % _PARTS
+        spent, success = (_batches(table, batch) for table in (spent, success))
+    parts = len(spent)
+    weights = random.multinomial(parts, np.full(parts, 1 / parts), size=_RESAMPLES).astype(float)
+    sums, counts = weights @ spent, weights @ success
+    logs = np.zeros_like(sums)
+    known = (successes >= FEWEST) & (sums > 0).all(axis=0)
+    logs[:, known] = np.log(sums[:, known]) - np.log(np.maximum(counts[:, known], 1))
+    return Expected(np.array(values), successes, logs)
+
+
+def _batches(table: Table, batch: NDArray[np.int64]) -> Table:
+    columns = [np.bincount(batch, column, _PARTS) for column in table.T]
+    return np.stack(columns, axis=1)

@@ -1,0 +1,153 @@
+"""Trials of groups side by side: of the same problem, with the same random numbers."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+Table = NDArray[np.float64]
+
+PROBLEM = ("map_digest", "map_instance", "start", "target", "corner_cutting")
+"""Columns that say what is planned or driven: a map's content, not its name."""
+
+SPENT = {
+    "evaluations": ("evaluations",),
+    "time": ("plan_time_s", "compute_time_s"),
+    "cost": ("cost",),
+}
+"""Each amount, and the columns of the tasks that have it."""
+
+
+@dataclass(frozen=True)
+class Groups:
+    """Trials of two or more groups, a row a block: one problem, seed and number of a trial.
+
+    Parameters
+    ----------
+    names : tuple of str
+        The groups.
+    success : (blocks, groups) float64
+        1 where the trial succeeded, else 0; NaN where a group has no such trial.
+    spent : mapping of str to (blocks, groups) float64
+        The amounts of `SPENT` that the task has: of every trial, failures included, but the cost
+        only of those that succeeded.
+    chance : tuple of bool
+        Whether a group draws random numbers: one that does not does the same in each trial.
+    repeated : int
+        Trials that were left out, since another has the same block and group.
+    blocks : bool
+        Whether rows are blocks: not where no two trials pair, so that they stand as they come.
+    """
+
+    names: tuple[str, ...]
+    success: Table
+    spent: Mapping[str, Table]
+    chance: tuple[bool, ...]
+    repeated: int
+    blocks: bool = True
+
+
+class Overlap(NamedTuple):
+    """How many trials each group has, and how many pairs any two of them make."""
+
+    trials: NDArray[np.int64]
+    pairs: NDArray[np.int64]
+
+    def paired(self, i: int, j: int) -> bool:
+        """Tell whether at least half of the smaller group's trials have a partner."""
+        fewer = min(self.trials[i], self.trials[j])
+        return bool(fewer > 0 and 2 * self.pairs[i, j] >= fewer)
+
+
+def overlap(values: Table, blocks: bool) -> Overlap:
+    """Count trials and pairs.
+
+    Parameters
+    ----------
+    values : (blocks, groups) float64
+        NaN where a group has nothing.
+    blocks : bool
+        Whether its rows are blocks.
+
+    Returns
+    -------
+    Overlap
+        The counts.
+    """
+    there = (~np.isnan(values)).astype(float)
+    pairs = np.rint(there.T @ there).astype(np.int64)
+    return Overlap(pairs.diagonal().copy(), pairs if blocks else np.zeros_like(pairs))
+
+
+def side_by_side(
+    trials: pd.DataFrame, success: str, group: pd.Series, also: Sequence[str] = ()
+) -> Groups:
+    """Lay the trials of groups side by side, in blocks.
+
+    Parameters
+    ----------
+    trials : DataFrame
+        One row a trial of one task, as `read_trials` gives it.
+    success : str
+        The task's column that says whether a trial succeeded.
+    group : Series of ordered categories
+        The group of each trial, its categories in the order of the groups.
+    also : sequence of str
+        Columns that must be equal within a block, besides the problem, the seed and the number of
+        the trial: settings that vary and are not what is compared. They have one value a run.
+
+    Returns
+    -------
+    Groups
+        Two trials of a group in one block are one that was done twice: the last counts.
+    """
+    columns = [*PROBLEM, "seed", *also]
+    runs = trials.drop_duplicates("key").set_index("key")
+    tried = runs.groupby(columns, dropna=False, sort=False).ngroup()
+    frame = pd.DataFrame(
+        {
+            "run": trials["key"].map(tried).to_numpy(),
+            "trial": trials["trial"].to_numpy(),
+            "group": group.cat.codes.to_numpy(),
+        },
+        index=trials.index,
+    )
+    once = ~frame.duplicated(keep="last")
+    frame, kept = frame[once], trials[once]
+    block = frame.groupby(["run", "trial"], sort=False).ngroup().to_numpy()
+    blocks = len(np.unique(block)) < len(block)
+    if not blocks:  # a row for each trial would be much of nothing
+        block = frame.groupby("group").cumcount().to_numpy()
+    names = tuple(str(name) for name in group.cat.categories)
+    shape = (int(block.max(initial=-1)) + 1, len(names))
+
+    def table(values: pd.Series) -> Table:
+        filled = np.full(shape, np.nan)
+        filled[block, frame["group"].to_numpy()] = values.to_numpy(dtype=float)
+        return filled
+
+    found = kept[success].astype(float)
+    spent = {
+        name: table(kept[column].where(found == 1) if name == "cost" else kept[column])
+        for name, columns in SPENT.items()
+        for column in columns
+        if column in kept
+    }
+    return Groups(names, table(found), spent, _chance(kept, success, frame["group"], names),
+                  int((~once).sum()), blocks)  # fmt: skip
+
+
+def _chance(
+    trials: pd.DataFrame, success: str, group: pd.Series, names: Sequence[str]
+) -> tuple[bool, ...]:
+    """Tell which groups draw random numbers: they evaluate, or trials of a run differ."""
+    if "evaluations" not in trials:
+        return (True,) * len(names)
+    drawn = trials["evaluations"].gt(0).groupby(group).any()
+    results = [name for name in (success, "cost") if name in trials]
+    differ = trials.groupby("key")[results].nunique(dropna=False).gt(1).any(axis=1)
+    drawn |= trials["key"].map(differ).groupby(group).any()
+    return tuple(bool(drawn.get(code, False)) for code in range(len(names)))
