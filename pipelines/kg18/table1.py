@@ -39,7 +39,9 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
         Success and epochs beside the paper's, and what a path costs.
     """
     canonical = trials[trials["map_instance"] == 0]
-    rows = summarise_by(canonical, ["map", "map_source", "planner"])
+    by = ["map", "map_source", "planner"]
+    rows = summarise_by(canonical, by)
+    tables = _beside_the_paper(rows), _effort(rows)
     return Section(
         title="KG18 Table 1: known maps",
         text=(
@@ -48,7 +50,7 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
             "of 100 and 5; each stops at its first feasible path, or after 500 epochs.",
             RECONSTRUCTED,
         ),
-        tables=(_beside_the_paper(rows), _effort(rows)),
+        tables=tuple(table.with_runs(canonical, by) for table in tables),
         remarks=_remarks(rows),
     )
 

@@ -30,7 +30,8 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
     Section
         Success and epochs over the instances of each class.
     """
-    rows = summarise_by(trials, ["map", "map_source", "planner"], summarise_class)
+    by = ["map", "map_source", "planner"]
+    rows = summarise_by(trials, by, summarise_class)
     return Section(
         title="The same over classes of maps",
         text=(
@@ -38,7 +39,7 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
             "from its seeded generator; the map of Table 1 is the first of them.",
             RECONSTRUCTED,
         ),
-        tables=(_table(rows),),
+        tables=(_table(rows).with_runs(trials, by),),
         remarks=(
             "Trials on one instance are not independent evidence about its class, so the interval "
             "counts instances, not trials: Wilson's, with the mean of the instances' rates. Rates "

@@ -55,7 +55,11 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
             "paper's ten tests, or takes 829 (unlimited), as in one more.",
             SCENES,
         ),
-        tables=(_methods(methods), _scenes(trials), _stages(stages)),
+        tables=(
+            _methods(methods).with_runs(trials, ["planner"]),
+            _scenes(trials).with_runs(trials, ["map"]),
+            _stages(stages).with_runs(trials, ["planner"]),
+        ),
         remarks=remarks_of(methods, stages),
     )
 

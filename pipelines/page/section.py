@@ -11,8 +11,8 @@ A section is one file of pipelines, ``table*.py`` or ``figure_*.py``, that offer
 """
 
 import importlib
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
@@ -21,7 +21,8 @@ from types import ModuleType
 import pandas as pd
 
 from gapath.discovery import entry_points, imported
-from gapath.errors import require_all
+from gapath.errors import require, require_all
+from gapath.pipelines.numbers.behind import keys_behind
 
 ALL = "*"
 """What a section declares that wants the trials of every task, or of every experiment."""
@@ -56,6 +57,16 @@ class Table:
         The text of its cells, for people.
     heads : int
         The first so many columns name the row.
+    runs : tuple of tuple of str
+        For each row of `shown` the keys of the runs behind it, to whose pages it leads; empty
+        where rows lead nowhere.
+    sortable : bool
+        Whether the rows say the same in another order.
+
+    Raises
+    ------
+    InputError
+        If there are runs, but not for each row.
     """
 
     name: str
@@ -63,11 +74,34 @@ class Table:
     data: pd.DataFrame
     shown: pd.DataFrame
     heads: int = 2
+    runs: tuple[tuple[str, ...], ...] = ()
+    sortable: bool = True
+
+    def __post_init__(self) -> None:
+        given, rows = len(self.runs), len(self.shown)
+        require(given in (0, rows), f"table {self.name}, runs", given, f"one entry a row, {rows}")
 
     def groups(self) -> list[list[tuple[str, ...]]]:
         """Give the rows of cells, those with the same first cell together."""
         rows = self.shown.itertuples(index=False, name=None)
         return [list(group) for _, group in groupby(rows, key=itemgetter(0))]
+
+    def with_runs(self, trials: pd.DataFrame, by: Sequence[str]) -> "Table":
+        """Lead each row to the runs behind it.
+
+        Parameters
+        ----------
+        trials : DataFrame
+            One row a trial, with the columns `by` and `key`.
+        by : sequence of str
+            The columns that name a row, in `data` too.
+
+        Returns
+        -------
+        Table
+            With `runs`.
+        """
+        return replace(self, runs=keys_behind(trials, by, self.data))
 
     def csv(self) -> str:
         """Write the numbers as CSV."""

@@ -46,7 +46,9 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
             "as in the paper take every generation; a thousand seeds end at their first path.",
             DRAWN,
         ),
-        tables=(_beside_the_paper(rows), _effort(rows)),
+        tables=tuple(
+            table.with_runs(trials, _BY) for table in (_beside_the_paper(rows), _effort(rows))
+        ),
         remarks=_remarks(rows, lost(trials)),
     )
 

@@ -54,7 +54,7 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
             "each run ends at its first feasible path.",
             DRAWN,
         ),
-        tables=(_table(rows),),
+        tables=(_table(rows).with_runs(cells, list(SWEPT)),),
         figures=tuple(_figure(cells, name) for name in SWEPT if len(set(cells[name])) > 1),
         remarks=(
             _nearest(rows, cells),
@@ -99,8 +99,8 @@ def rate_cells(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        map, planner, the columns of `SWEPT`, n, success, paper, paper_low, paper_high, inside
-        (whether the rate lies in the paper's interval).
+        map, planner, the run's key, the columns of `SWEPT`, n, success, paper, paper_low,
+        paper_high, inside (whether the rate lies in the paper's interval).
     """
     by_key = {run.folder.name: run for run in runs}
     rows = []
@@ -115,6 +115,7 @@ def rate_cells(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> pd.DataFrame:
             {
                 "map": name,
                 "planner": run.known.preset,
+                "key": run.folder.name,
                 **settings,
                 "n": len(group),
                 "success": success,

@@ -69,7 +69,7 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
         for _, row in rows.iterrows()
     ]
     table = Table(overview.name, overview.caption, rows, pd.DataFrame(shown), heads=3)
-    return Section(title=overview.title, tables=(table,))
+    return Section(title=overview.title, tables=(table.with_runs(trials, by),))
 
 
 def plain_overview(task: type[Task]) -> Overview:

@@ -73,7 +73,7 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
     )
     return Section(
         title=f"Metrics of paths: {task.name}",
-        tables=(table,),
+        tables=(table.with_runs(trials, by),),
         remarks=tuple(
             module.__doc__.partition("\n")[0] for module in modules.values() if module.__doc__
         ),

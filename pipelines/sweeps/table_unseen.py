@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import pandas as pd
 
+from gapath.pipelines.numbers.behind import keys_behind
 from gapath.pipelines.numbers.statistics import expected_running_time, wilson
 from gapath.pipelines.numbers.summary import summarise_by
 from gapath.pipelines.numbers.text import NOTHING, number, percent, percent_range, span
@@ -209,11 +210,12 @@ def _families(trials: pd.DataFrame) -> Table:
         "that is less than A*'s; median octile length above the published, of paths found.",
         rows,
         pd.DataFrame(shown),
-    )
+    ).with_runs(trials, ["family", "method"])
 
 
 def _maps(trials: pd.DataFrame) -> Table:
-    rows = _summaries(trials, ["family", "place", "file"], "problem")
+    by = ["family", "place", "file"]
+    rows = _summaries(trials, by, "problem")
     shown = [
         {
             "Family": row["family"],
@@ -231,6 +233,7 @@ def _maps(trials: pd.DataFrame) -> Table:
         rows.drop(columns="file"),
         pd.DataFrame(shown),
         heads=3,
+        runs=keys_behind(trials, [*by, "method"], rows),
     )
 
 

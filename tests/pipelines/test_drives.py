@@ -50,6 +50,7 @@ def drives_of(**columns):
         "compute_time_s": 0.5,
     }  # fmt: skip
     frame = pd.DataFrame(columns)
+    defaults["key"] = [f"run {i}" for i in range(len(frame))]
     return frame.assign(**{k: v for k, v in defaults.items() if k not in frame})
 
 

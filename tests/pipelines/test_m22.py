@@ -83,7 +83,8 @@ def frame(planner, lengths, scene_name="m22_scene01", **columns):
     """Rows of trials, a missing length where no path was found."""
     lengths = np.array(lengths, dtype=float)
     rows = {
-        "map": scene_name, "map_source": "reconstructed", "planner": planner,
+        "key": f"{scene_name} {planner}", "map": scene_name, "map_source": "reconstructed",
+        "planner": planner,
         "feasible": ~np.isnan(lengths), "line_length": lengths, "length": lengths + 10,
         "epochs": 0 if "ga" not in planner else 30, "evaluations": 2100, "plan_time_s": 0.005,
         "stage_times_s": '{"dilation": 0.003, "search": 0.00002}',

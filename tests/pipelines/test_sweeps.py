@@ -42,6 +42,7 @@ def trials(**columns):
         "map_instance": 0, "start": "(1, 6)", "target": "(22, 6)", "planner": "ga1",
         "feasible": True, **METRICS,
     }  # fmt: skip
+    defaults["key"] = [f"run {i}" for i in range(len(frame))]
     return frame.assign(**{k: v for k, v in defaults.items() if k not in frame})
 
 

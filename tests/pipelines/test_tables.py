@@ -22,6 +22,7 @@ def trials(**columns):
         "optimality_ratio": 1.0, "length_ratio": math.nan, "evaluations": 10,
         "epochs": 1, "feasible": True,
     }  # fmt: skip
+    defaults["key"] = [f"run {i}" for i in range(len(frame))]
     return frame.assign(**{k: v for k, v in defaults.items() if k not in frame})
 
 

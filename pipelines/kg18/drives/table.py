@@ -33,7 +33,9 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
         How the drives ended and what they took, for each map and navigator.
     """
     trials = trials[trials["map_instance"] == 0]
-    rows = summarise_by(trials, ["map", "map_source", "navigator"], summarise_drives)
+    by = ["map", "map_source", "navigator"]
+    rows = summarise_by(trials, by, summarise_drives)
+    tables = _outcomes(rows), _effort(rows)
     return Section(
         title="KG18 Sec. 6: drives through unknown maps",
         text=(
@@ -45,7 +47,7 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
             "in part C or with A* as its last resort.",
             RECONSTRUCTED,
         ),
-        tables=(_outcomes(rows), _effort(rows)),
+        tables=tuple(table.with_runs(trials, by) for table in tables),
         remarks=_remarks(rows),
     )
 

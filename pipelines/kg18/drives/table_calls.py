@@ -40,6 +40,10 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
     calls = pd.concat([calls for _, calls in read], ignore_index=True) if read else pd.DataFrame()
     if calls.empty and not skipped:
         return None
+    tables: tuple[Table, ...] = ()
+    if len(calls):
+        called = trials[trials["key"].isin({run.folder.name for run, _ in read})]
+        tables = (_table(summarise_calls(calls)).with_runs(called, _MAP),)
     return Section(
         title="What the planners' calls come to",
         text=(
@@ -48,7 +52,7 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
             "are tried in their order until one finds a path.",
             RECONSTRUCTED,
         ),
-        tables=() if calls.empty else (_table(summarise_calls(calls)),),
+        tables=tables,
         remarks=() if calls.empty else _remarks(calls),
         skipped=tuple(skipped),
     )

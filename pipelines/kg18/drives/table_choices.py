@@ -135,7 +135,8 @@ def _table(trials: pd.DataFrame, name: str, source: str, methods: Mapping[str, M
         "computing time: of all drives.",
         data,
         pd.DataFrame([_shown(row) for row in rows]),
-    )
+        sortable=False,  # rows are held against the first
+    ).with_runs(trials, ["navigator"])
 
 
 def _shown(row: dict[str, Any]) -> dict[str, str]:

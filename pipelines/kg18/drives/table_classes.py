@@ -41,7 +41,14 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
             "from its seeded generator; the map of the tables above is the first of them.",
             RECONSTRUCTED,
         ),
-        tables=(_classes(trials), *([_failures(failures)] if len(failures) else [])),
+        tables=(
+            _classes(trials).with_runs(trials, _BY),
+            *(
+                [_failures(failures).with_runs(trials, [*_BY, "map_instance"])]
+                if len(failures)
+                else []
+            ),
+        ),
         remarks=(
             "Drives on one instance are not independent evidence about its class, so the interval "
             "counts instances, not drives: Wilson's, with the mean of the instances' rates.",
