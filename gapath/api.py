@@ -9,8 +9,9 @@ from gapath.discovery import reader_of, yaml_values
 from gapath.errors import InputError, require
 from gapath.grid import Field, GridMap
 from gapath.planning.acceleration import AUTO, with_kernels
+from gapath.planning.planner import Particular, Planner
 from gapath.planning.simulation import plan_once
-from gapath.problem import CornerCutting, Particular, Plan, Planner, Problem
+from gapath.problem import CornerCutting, Plan, Problem
 from gapath.store.inputs import watched
 
 
@@ -67,7 +68,7 @@ def plan(
     start, target : (x, y), optional
         Fields; by default those that the map's author meant.
     planner : str or Planner
-        A name in ``conf/planner``, or a planner (`gapath.problem.Planner`).
+        A name in ``conf/planner``, or a planner (`gapath.planning.planner.Planner`).
     seed : int
         Key of the random stream: the same seed gives the same plan.
     corner_cutting : str

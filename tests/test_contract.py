@@ -16,9 +16,10 @@ from gapath.grid import GridMap
 from gapath.kernels import rng
 from gapath.planning.flaw import flaw
 from gapath.planning.path import polyline_length
+from gapath.planning.planner import Planner
 from gapath.planning.shortest_path import shortest_path
 from gapath.planning.simulation import plan_once, plan_trials
-from gapath.problem import CornerCutting, Plan, Planner, PlanStatus, Problem
+from gapath.problem import CornerCutting, Plan, PlanStatus, Problem
 from gapath.running import config
 from gapath.running.experiment import execute, run_started
 from gapath.running.naming import Method

@@ -76,7 +76,7 @@ class Navigator(Protocol):
     """What a module of `gapath.navigators` offers under the name ``Navigator``.
 
     A frozen dataclass whose fields are the settings of its YAML file in ``conf/navigator``. One
-    that does not take every map is `gapath.problem.Particular`, too.
+    that does not take every map is `gapath.planning.planner.Particular`, too.
     """
 
     @property

@@ -19,7 +19,7 @@ from gapath.grid import Field
 from gapath.kernels.field_of_view import remaining_cost
 from gapath.kernels.rng import fill, high
 from gapath.kernels.units import SCALE
-from gapath.problem import A_PLANNER, Planner
+from gapath.planning.planner import A_PLANNER, Planner
 
 A, B, C, DRAW = 0, 1, 2, 3  # numbers of the parts in random streams
 

@@ -24,7 +24,8 @@ from gapath.grid import Field, Table
 from gapath.kernels.field_of_view import remaining_cost
 from gapath.kernels.s04.genotype import MAX_SIDE
 from gapath.kernels.units import OBSTACLE
-from gapath.problem import A_PLANNER, CornerCutting, Particular, Plan, Planner, no_path, nothing
+from gapath.planning.planner import A_PLANNER, Particular, Planner
+from gapath.problem import CornerCutting, Plan, no_path, nothing
 
 
 class Memory(NamedTuple):

@@ -10,9 +10,10 @@ from gapath.errors import require
 from gapath.grid import Field, GridMap
 from gapath.kernels.rng import Stream
 from gapath.kernels.units import OBSTACLE, SCALE
+from gapath.planning.planner import A_PLANNER, Particular
+from gapath.planning.planner import Planner as AnyPlanner
 from gapath.planning.stages import Stages
-from gapath.problem import A_PLANNER, CornerCutting, Particular, Plan, PlanStatus, Query
-from gapath.problem import Planner as AnyPlanner
+from gapath.problem import CornerCutting, Plan, PlanStatus, Query
 from gapath.survey.obstacle_image import Clearance, dilate
 
 

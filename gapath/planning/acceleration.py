@@ -5,7 +5,7 @@ from operator import is_
 from typing import Any, Protocol, TypeVar, runtime_checkable
 
 from gapath.errors import require
-from gapath.problem import Planner
+from gapath.planning.planner import Planner
 
 AUTO = "auto"
 """The choice of every planner's own default."""

@@ -10,8 +10,9 @@ import numpy as np
 from gapath.errors import InputError
 from gapath.kernels.rng import stream
 from gapath.planning.flaw import flaw
+from gapath.planning.planner import Batching, Planner
 from gapath.planning.threads import in_order
-from gapath.problem import Batching, Plan, Planner, PlanStatus, Problem
+from gapath.problem import Plan, PlanStatus, Problem
 
 
 @dataclass(frozen=True, eq=False)

@@ -30,8 +30,9 @@ from gapath.events import (
 )
 from gapath.grid import GridMap
 from gapath.planning.path import path_weights
+from gapath.planning.planner import Particular
 from gapath.planning.shortest_path import shortest_path
-from gapath.problem import Particular, Plan, Problem
+from gapath.problem import Plan, Problem
 from gapath.task import Batch, Trial
 
 KNOWN = "drive.known_map"

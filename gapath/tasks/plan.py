@@ -13,9 +13,10 @@ from gapath.errors import require
 from gapath.events import Event, Evolved, RunStarted, Surveyed, TrialFinished, TrialStarted
 from gapath.grid import GridMap
 from gapath.planning.path import octile_length
+from gapath.planning.planner import Particular, Planner
 from gapath.planning.shortest_path import shortest_path
 from gapath.planning.simulation import TimedPlan, plan_trials
-from gapath.problem import Particular, Plan, Planner, PlanStatus, Problem
+from gapath.problem import Plan, PlanStatus, Problem
 from gapath.task import Batch, Row, Trial, head, metrics
 
 _INFEASIBLE = PlanStatus.INFEASIBLE.name.lower()

@@ -29,7 +29,8 @@ from gapath.driving.navigation import Situation
 from gapath.driving.told import drive_events
 from gapath.events import Outcome
 from gapath.kernels.rng import Stream
-from gapath.problem import Plan, Planner, Problem
+from gapath.planning.planner import Planner
+from gapath.problem import Plan, Problem
 from gapath.recorders import mcap, rerun
 from gapath.running.config import Run, conf_folder
 from gapath.running.experiment import execute, run_started

@@ -10,8 +10,9 @@ from gapath.components import build
 from gapath.events import Event, RunStarted, TrialFinished, TrialStarted
 from gapath.grid import GridMap
 from gapath.kernels.rng import stream
+from gapath.planning.planner import Planner
 from gapath.planning.shortest_path import shortest_path
-from gapath.problem import Plan, Planner, Problem
+from gapath.problem import Plan, Problem
 from gapath.task import Batch, Row, Trial, head
 
 BACK = 1
