@@ -112,7 +112,9 @@ def plan(
     problem = Problem(map, start, target, rule)
     if _is_particular(type(chosen)):
         cast(Particular, chosen).check(problem)
-    return plan_once(problem, chosen, seed)
+    found = plan_once(problem, chosen, seed)
+    object.__setattr__(found, "problem", problem)  # a copy would cost as much as the call
+    return found
 
 
 def _named(name: str, kernels: str, settings: dict[str, Any]) -> Planner:

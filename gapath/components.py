@@ -5,6 +5,7 @@ import math
 from collections.abc import Callable
 from typing import Any, cast, get_args, get_origin, get_type_hints
 
+import numpy as np
 from omegaconf import OmegaConf
 from omegaconf.errors import ConfigKeyError, OmegaConfBaseException
 
@@ -227,6 +228,8 @@ def _whole(hint: Any, value: Any) -> Any:
 
     OmegaConf does so for text where a field is a number only, not where it may be a word.
     """
+    if isinstance(value, np.generic):  # of an array or a table
+        value = value.item()
     allowed = get_args(hint) or (hint,)
     if isinstance(value, list):
         items = next(

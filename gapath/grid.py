@@ -8,7 +8,7 @@ import hashlib
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Protocol, TypeAlias
+from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,10 @@ from numpy.typing import NDArray
 from gapath.errors import InputError, require
 from gapath.kernels.table import fill_parts, fill_table
 from gapath.kernels.units import ALLOW
+from gapath.pictures.shown import Shown, axes_for
+
+if TYPE_CHECKING:
+    from gapath.pictures.shown import Axes
 
 Field: TypeAlias = tuple[int, int]
 """A field of the map as (x, y)."""
@@ -54,7 +58,7 @@ class PlanningMap(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class GridMap:
+class GridMap(Shown):
     """A map of square fields, each with the cost of passing it.
 
     Parameters
@@ -256,6 +260,26 @@ class GridMap:
         metres[:, 0] = x + right * cos - up * sin
         metres[:, 1] = y + right * sin + up * cos
         return metres
+
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw the map, and its start and target where it has them (`Shown.plot`)."""
+        from gapath.pictures.board import draw_map, mark_ends
+
+        ax = axes_for(ax)
+        draw_map(ax, self.weights)
+        mark_ends(ax, self.start, self.target)
+        ax.set_title(self.name)
+        return ax
+
+    def _told(self) -> dict[str, object]:
+        blocked = f"{100 * self.obstacles.mean():.3g} % of them obstacles"
+        return {
+            "name": self.name,
+            "fields": f"{self.cols} x {self.rows}, {blocked}",
+            "start, target": f"{self.start}, {self.target}",
+            "field": f"{self.resolution:g} m",
+            "source": self.source,
+        }
 
     @cached_property
     def _metric(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

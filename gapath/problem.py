@@ -1,12 +1,11 @@
 """A planning problem and a plan."""
 
-import html
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
 from enum import IntEnum
 from functools import cached_property
-from typing import Any, NamedTuple, Protocol, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +13,11 @@ from numpy.typing import NDArray
 from gapath.errors import InputError, one_of
 from gapath.grid import Field, GridMap, PlanningMap, nearest_free, other_reading
 from gapath.kernels import units
+from gapath.pictures.shown import Shown, axes_for
+
+if TYPE_CHECKING:
+    from gapath.pictures.animation import Animation
+    from gapath.pictures.shown import Axes
 
 
 class CornerCutting(IntEnum):
@@ -107,6 +111,15 @@ class Problem:
                 raise InputError(
                     f"map.{name}", f"{list(place)}, an obstacle", f"a free field{hint}"
                 )
+
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw the map with start and target (`Shown.plot`)."""
+        from gapath.pictures.board import draw_map, mark_ends
+
+        ax = axes_for(ax)
+        draw_map(ax, self.map.weights)
+        mark_ends(ax, self.start, self.target)
+        return ax
 
 
 def _pair(place: Any) -> Field | None:
@@ -218,7 +231,7 @@ class Answer:
 
 
 @dataclass(frozen=True, eq=False)
-class Plan(Answer):
+class Plan(Answer, Shown):
     """A planner's answer, and what it can tell of how it came to it.
 
     Parameters
@@ -236,27 +249,82 @@ class Plan(Answer):
         if it made nothing.
     stages : mapping of str to float
         Wall time of each stage in seconds, for a planner that has stages.
+    problem : Problem, optional
+        What was asked; `gapath.plan` sets it.
     """
 
     trace: Callable[[], Evolution | None] = field(default=nothing, repr=False)
     lines: Callable[[], NDArray[np.int32]] = field(default=no_path, repr=False)
     survey: Callable[[], Graph | None] = field(default=nothing, repr=False)
     stages: Mapping[str, float] = field(default_factory=dict, repr=False)
+    problem: Problem | None = field(default=None, repr=False)
 
     @cached_property
     def evolution(self) -> Evolution | None:
         """The history of a genetic algorithm, epoch by epoch; None for other planners."""
         return self.trace()
 
-    def _repr_html_(self) -> str:
-        rows: dict[str, object] = {"status": f"{self.status.name.lower()}: {self.status.sentence}"}
-        rows |= {"cost": f"{self.cost:g}", "fields": len(self.path)}
-        rows |= {name: getattr(self, name) for name in ("epochs", "evaluations", "expansions")}
-        cells = "".join(
-            f"<tr><th>{key}</th><td>{html.escape(str(value))}</td></tr>"
-            for key, value in rows.items()
-        )
-        return f"<table><caption>gapath.Plan</caption>{cells}</table>"
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw the map, the path and its way points; without a path the map (`Shown.plot`)."""
+        from gapath.pictures.board import draw_path
+
+        problem = self._asked()
+        ax = problem.plot(ax)
+        if self.feasible:
+            draw_path(ax, self.path, self.lines())
+            ax.set_title(f"{problem.map.name}: a path of cost {self.cost:g}")
+        else:
+            ax.set_title(f"{problem.map.name}: {self.status.sentence}")
+        return ax
+
+    def convergence(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw the best and the mean fitness by epoch, as `evolution` has them (`Shown.plot`).
+
+        Raises
+        ------
+        InputError
+            If the planner keeps no history, as a graph search does.
+        """
+        from gapath.pictures.curves import draw_convergence
+
+        history, ax = self._history(), axes_for(ax)
+        draw_convergence(ax, history.best, history.mean)
+        return ax
+
+    def animate(self) -> "Animation":
+        """Show the best path of each epoch in which it became another one.
+
+        Returns
+        -------
+        Animation
+            A notebook plays it; its `save` writes a file.
+
+        Raises
+        ------
+        InputError
+            If the planner keeps no history, as a graph search does.
+        """
+        from gapath.pictures.animation import growing_path
+
+        problem, history = self._asked(), self._history()
+        shape = problem.map.weights.shape
+        return growing_path(problem.plot, shape, history.way_points, history.best)
+
+    def _asked(self) -> Problem:
+        if self.problem is None:
+            raise InputError("plan.problem", None, "a plan of gapath.plan, which knows its problem")
+        return self.problem
+
+    def _history(self) -> Evolution:
+        if self.evolution is None:
+            right = "the plan of a genetic algorithm: other planners keep none"
+            raise InputError("plan.evolution", "no history", right)
+        return self.evolution
+
+    def _told(self) -> dict[str, object]:
+        told: dict[str, object] = {"status": f"{self.status.name.lower()}: {self.status.sentence}"}
+        told |= {"cost": f"{self.cost:g}", "fields": len(self.path)}
+        return told | {n: getattr(self, n) for n in ("epochs", "evaluations", "expansions")}
 
 
 class Query(Protocol):

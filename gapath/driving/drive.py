@@ -80,7 +80,7 @@ class Leg(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Drive:
+class Driven:
     """A drive from its first look to its end.
 
     Parameters
@@ -141,7 +141,7 @@ def drive(
     step_limit: int,
     unknown_weight: float,
     before: GridMap | None = None,
-) -> Drive:
+) -> Driven:
     """Drive once.
 
     Parameters
@@ -165,7 +165,7 @@ def drive(
 
     Returns
     -------
-    Drive
+    Driven
         How it ended, and every step.
     """
     start, target = problem.start, problem.target
@@ -231,4 +231,4 @@ def drive(
         step += len(ahead)
         legs.append(Leg(decision, looks, passed, time.perf_counter() - last))
     seconds = time.perf_counter() - begin
-    return Drive(sensor, step_limit, unknown_weight, outcome, legs, seconds)
+    return Driven(sensor, step_limit, unknown_weight, outcome, legs, seconds)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.driving.drive import Drive, Frame
+from gapath.driving.drive import Driven, Frame
 from gapath.events import Mode, Outcome
 from gapath.planning.path import path_weights
 from gapath.problem import Plan, PlanStatus
@@ -48,7 +48,7 @@ class DriveRow(Row):
         return self.outcome == Outcome.RETURNED.name.lower() and self.stands == self.steps
 
 
-def drive_row(batch: Batch, trial: int, driven: Drive, optimum: Plan) -> DriveRow:
+def drive_row(batch: Batch, trial: int, driven: Driven, optimum: Plan) -> DriveRow:
     """Sum a drive up.
 
     Parameters
@@ -57,7 +57,7 @@ def drive_row(batch: Batch, trial: int, driven: Drive, optimum: Plan) -> DriveRo
         Problem, seed, and names for the row.
     trial : int
         Number of the drive.
-    driven : Drive
+    driven : Driven
         The drive.
     optimum : Plan
         A path of fewest steps on the true map.

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.driving.drive import Drive
+from gapath.driving.drive import Driven
 from gapath.events import (
     Called,
     DriveFinished,
@@ -19,12 +19,12 @@ from gapath.events import (
 )
 
 
-def drive_events(driven: Drive, cols: int, seed: int, trial: int, step: int) -> Iterator[Event]:
+def drive_events(driven: Driven, cols: int, seed: int, trial: int, step: int) -> Iterator[Event]:
     """Tell a drive as events.
 
     Parameters
     ----------
-    driven : Drive
+    driven : Driven
         The drive.
     cols : int
         Width of the map.

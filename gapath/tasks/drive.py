@@ -11,7 +11,7 @@ import numpy as np
 
 from gapath.components import build, typed
 from gapath.discovery import reader_of, yaml_values
-from gapath.driving.drive import Drive, Sensor, drive
+from gapath.driving.drive import Driven, Sensor, drive
 from gapath.driving.navigation import Navigator
 from gapath.driving.row import DriveRow, drive_row
 from gapath.driving.told import drive_events
@@ -266,7 +266,7 @@ class Task:
         stayed = sum(row.never_left for row in rows)
         return f" ({f'{stayed} ' if len(rows) > 1 else ''}{NEVER_LEFT})" if stayed else ""
 
-    def _drive(self, problem: Problem, seed: int, trial: int, step_limit: int) -> Drive:
+    def _drive(self, problem: Problem, seed: int, trial: int, step_limit: int) -> Driven:
         return drive(
             problem,
             self.navigator,

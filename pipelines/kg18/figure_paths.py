@@ -12,9 +12,9 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from gapath.events import Event, RunStarted, TrialFinished
+from gapath.pictures.board import draw_map, map_legend, mark_ends
 from gapath.pipelines.numbers.text import number
 from gapath.pipelines.page.figures import WIDTH, Look, looks, render, style
-from gapath.pipelines.page.map_picture import draw_map, mark_ends
 from gapath.pipelines.page.section import RECONSTRUCTED, Figure, Section
 from gapath.pipelines.papers.names import label, rank
 from gapath.pipelines.reading.logs import events_of, read_logs, run_start
@@ -108,7 +108,8 @@ def _figure(examples: dict[str, Found], look: dict[str, Look]) -> Figure:
     with style():
         canvas = Canvas(figsize=(WIDTH, WIDTH * grid.rows / grid.cols + 1.1), layout="constrained")
         axes = canvas.subplots()
-        handles: list[Artist] = [*draw_map(axes, grid.weights)]
+        draw_map(axes, grid.weights)
+        handles: list[Artist] = [*map_legend(grid.weights)]
         handles += axes.plot(*start.optimal_path.T, color="black", linestyle=":", label="optimal")
         for planner, (color, dashes) in look.items():
             paths = examples[planner].paths if planner in examples else []
@@ -116,7 +117,7 @@ def _figure(examples: dict[str, Found], look: dict[str, Look]) -> Figure:
             handles.append(Line2D([], [], color=color, linestyle=dashes, label=name))
             for path in paths:
                 axes.plot(*path.T, color=color, linestyle=dashes, linewidth=1.5)
-        mark_ends(axes, start.problem)
+        mark_ends(axes, start.problem.start, start.problem.target)
         axes.set_title(title)
         canvas.legend(handles=handles, loc="outside lower center", ncols=2)
         svg, png = render(canvas)

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 
 import pandas as pd
 
+from gapath.pictures.board import draw_lines, draw_picture
 from gapath.pipelines.m22.logs import First, read_first
 from gapath.pipelines.numbers.summary import summarise_by
 from gapath.pipelines.numbers.text import number, percent, percent_range
 from gapath.pipelines.page.figures import panels, render, style
-from gapath.pipelines.page.map_picture import draw_lines, draw_picture
 from gapath.pipelines.page.section import Figure, Section, Table
 from gapath.pipelines.papers.names import label, rank
 from gapath.pipelines.reading.logs import read_logs
@@ -95,7 +95,8 @@ def _figure(graphs: dict[str, First]) -> Figure:
             first = graphs[name]
             graph = first.graph
             assert graph is not None
-            draw_picture(panel, first.start.problem.map, graph)
+            grid = first.start.problem.map
+            draw_picture(panel, grid.obstacles, graph.grown(grid.rows, grid.cols))
             draw_lines(panel, graph.points, graph.edges)
             if len(first.way_points):
                 panel.plot(*first.way_points.T, color="#F0E442", linewidth=1.2)

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import pandas as pd
 from matplotlib.lines import Line2D
 
+from gapath.pictures.board import draw_picture
 from gapath.pipelines.m22.logs import First, read_first
 from gapath.pipelines.m22.table import SCENES
 from gapath.pipelines.page.figures import Look, looks, panels, render, style
-from gapath.pipelines.page.map_picture import draw_picture
 from gapath.pipelines.page.section import Figure, Section
 from gapath.pipelines.papers.names import label, rank
 from gapath.pipelines.reading.logs import read_logs
@@ -64,7 +64,8 @@ def _figure(found: dict[str, dict[str, First]], look: dict[str, Look]) -> Figure
         for panel, (name, by_planner) in zip(axes, found.items(), strict=True):
             grid = next(iter(by_planner.values())).start.problem.map
             graph = next((f.graph for f in by_planner.values() if f.graph is not None), None)
-            draw_picture(panel, grid, graph)
+            grown = None if graph is None else graph.grown(grid.rows, grid.cols)
+            draw_picture(panel, grid.obstacles, grown)
             panel.set_title(label(name))
             for planner in drawn:
                 if planner not in by_planner or not len(by_planner[planner].way_points):

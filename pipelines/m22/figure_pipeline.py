@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
+from gapath.pictures.board import LINE, draw_lines, draw_picture
 from gapath.pipelines.m22.logs import First, read_first
 from gapath.pipelines.page.figures import panels, render, style
-from gapath.pipelines.page.map_picture import LINE, draw_lines, draw_picture
 from gapath.pipelines.page.section import Figure, Section
 from gapath.pipelines.papers.names import label, rank
 from gapath.pipelines.reading.logs import read_logs
@@ -56,10 +56,11 @@ def _figure(first: First, graph: Graph) -> Figure:
     titles = ("image (Fig. 2)", "dilated (Fig. 3)", "keypoints (Fig. 5)", "all lines (Fig. 6)",
               "free lines (Fig. 7)", "path found")  # fmt: skip
     none = np.empty((0, 2), dtype=np.int32)
+    grown = graph.grown(grid.rows, grid.cols)
     with style():
         canvas, axes = panels(6, 1.75, same_axes=False)
         for i, (panel, title) in enumerate(zip(axes, titles, strict=True)):
-            draw_picture(panel, grid, graph if i in (1, 3, 4, 5) else None)
+            draw_picture(panel, grid.obstacles, grown if i in (1, 3, 4, 5) else None)
             panel.set_title(title)
         draw_lines(axes[2], points, none)
         draw_lines(axes[3], points, everything.astype(np.int32))

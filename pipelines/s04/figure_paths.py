@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from gapath.events import Evolved, RunStarted
 from gapath.kernels.raster import polyline
+from gapath.pictures.board import draw_map, mark_ends
 from gapath.pipelines.page.figures import Look, looks, panels, render, style
-from gapath.pipelines.page.map_picture import draw_map, mark_ends
 from gapath.pipelines.page.section import DRAWN, Figure, Section
 from gapath.pipelines.papers.names import label, rank
 from gapath.pipelines.reading.logs import events_of, read_logs, run_start
@@ -142,7 +142,7 @@ def _figure(
                 panel.plot(*(hit + aside).T, "x", color=color, markersize=4)
                 kind = f"{len(hit)} fields in obstacles" if len(hit) else "free"
                 sentences.append(f"{label(name)}, {label(planner)}: {kind}.")
-            mark_ends(panel, start.problem)
+            mark_ends(panel, start.problem.start, start.problem.target)
             panel.set(xticks=[], yticks=[])
             panel.set_title(label(name, grid.source))
         handles = [

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gapath.driving.drive import Drive, Leg, Sensor
+from gapath.driving.drive import Driven, Leg, Sensor
 from gapath.driving.known_map import Looks
 from gapath.driving.navigation import Call, Decision
 from gapath.driving.told import drive_events
@@ -137,7 +137,7 @@ def _drive(grid, trial):
         looks = Looks([heading % 8], [len(news)], np.stack([news, entries]))
         legs.append(Leg(decision, looks, (place,), 1e-5 * (heading + 1)))
     outcome = Outcome.REACHED if trial == 0 else Outcome.OVERRAN
-    return Drive(Sensor(1, False), 100, 0.5, outcome, legs, 1e-3)
+    return Driven(Sensor(1, False), 100, 0.5, outcome, legs, 1e-3)
 
 
 def logged(event):

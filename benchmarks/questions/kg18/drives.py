@@ -24,7 +24,7 @@ import yaml
 from benchmarks.measure import Calls, Row, interleave, make_problem, quartiles, timed
 from gapath.components import build, expanded
 from gapath.discovery import yaml_values
-from gapath.driving.drive import Drive, Sensor, drive
+from gapath.driving.drive import Driven, Sensor, drive
 from gapath.driving.navigation import Situation
 from gapath.driving.told import drive_events
 from gapath.events import Outcome
@@ -79,14 +79,14 @@ def task_of(run: Run) -> DriveTask:
     return run.task
 
 
-def drive_once(task: DriveTask, problem: Problem, trial: int) -> Drive:
+def drive_once(task: DriveTask, problem: Problem, trial: int) -> Driven:
     """Drive as a trial of seed 0 does."""
     limit = task.step_limit or usual_limit(problem.map.rows * problem.map.cols)
     limits = (limit, task.unknown_weight)
     return drive(problem, task.navigator, task.sensor, task.changes, 0, trial, *limits)
 
 
-def drive_clocked(task: DriveTask, problem: Problem, trial: int) -> tuple[Drive, float]:
+def drive_clocked(task: DriveTask, problem: Problem, trial: int) -> tuple[Driven, float]:
     """Drive with kg18 and give the share of the time that its planners did not take."""
     nav: Any = task.navigator
     retreat, explore, *replan = clocks = [*map(Clock, (nav.retreat, nav.explore, *nav.replan))]

@@ -13,8 +13,8 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from gapath.events import DriveFinished, Event, Outcome, RunStarted, Stepped
+from gapath.pictures.board import draw_map, map_legend, mark_ends
 from gapath.pipelines.page.figures import WIDTH, render, style
-from gapath.pipelines.page.map_picture import draw_map, mark_ends
 from gapath.pipelines.page.section import RECONSTRUCTED, Figure, Section
 from gapath.pipelines.papers.names import label, rank
 from gapath.pipelines.reading.logs import events_of, read_logs, run_start
@@ -138,7 +138,8 @@ def _figure(examples: dict[str, Driven]) -> Figure:
     with style():
         canvas = Canvas(figsize=(WIDTH, WIDTH * grid.rows / grid.cols + 1.1), layout="constrained")
         axes = canvas.subplots()
-        handles: list[Artist] = [*draw_map(axes, grid.weights)]
+        draw_map(axes, grid.weights)
+        handles: list[Artist] = [*map_legend(grid.weights)]
         if len(start.optimal_path):
             handles += axes.plot(
                 *start.optimal_path.T, color="black", linestyle=":", label="shortest"
@@ -153,7 +154,7 @@ def _figure(examples: dict[str, Driven]) -> Figure:
                 if text not in [handle.get_label() for handle in handles]:
                     handles.append(Line2D([], [], color=color, linestyle=dashes, label=text))
                 sentences.append(f"{label(navigator)} {ended}, {len(trail.places) - 1} steps.")
-        mark_ends(axes, start.problem)
+        mark_ends(axes, start.problem.start, start.problem.target)
         axes.set_title(title)
         canvas.legend(handles=handles, loc="outside lower center", ncols=2)
         svg, png = render(canvas)

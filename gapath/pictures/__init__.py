@@ -1,0 +1,1 @@
+"""What maps, paths and histories look like, as functions that draw arrays, and in a notebook."""

@@ -1,0 +1,172 @@
+"""A map as a picture: what a field costs as grey, obstacles in a colour of their own."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap, to_rgb, to_rgba
+from matplotlib.image import AxesImage
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from numpy.typing import NDArray
+
+POINT, LINE, GROWN = "#D55E00", "#56B4E9", "#E69F00"
+PATH, UNKNOWN = "#0072B2", to_rgba("#56B4E9", 0.35)
+_OBSTACLE = "#4a5364"
+_COST = LinearSegmentedColormap.from_list("cost", ["#ffffff", "#eceef1", "#98a1b0"]).with_extremes(
+    bad=_OBSTACLE
+)
+_MOST = 1000
+"""Points of a picture along a side; of a larger map each is the dearest field of a square."""
+
+
+def draw_map(axes: Axes, weights: NDArray[np.float64]) -> AxesImage:
+    """Draw the fields of a map, field (x, y) centred at (x, y) with y down.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Where to draw.
+    weights : (rows, cols) float64
+        0 preferred, 1 an obstacle.
+
+    Returns
+    -------
+    matplotlib.image.AxesImage
+        The picture, for `redraw_map`.
+    """
+    image = axes.imshow(_cost(weights), cmap=_COST, vmin=0, vmax=1, interpolation="nearest")
+    _place(axes, image, weights.shape)
+    axes.spines[["top", "right"]].set_visible(True)
+    return image
+
+
+def redraw_map(image: AxesImage, weights: NDArray[np.float64]) -> None:
+    """Give a picture that `draw_map` drew other weights, (rows, cols) as before."""
+    image.set_data(_cost(weights))
+
+
+def draw_unknown(axes: Axes, unknown: NDArray[np.bool_]) -> AxesImage:
+    """Tint the fields of a map that are unknown, (rows, cols); `retint` changes which."""
+    image = axes.imshow(_tint(unknown), interpolation="nearest")
+    _place(axes, image, unknown.shape)
+    return image
+
+
+def retint(image: AxesImage, unknown: NDArray[np.bool_]) -> None:
+    """Tint other fields than `draw_unknown` did, (rows, cols) as before."""
+    image.set_data(_tint(unknown))
+
+
+def _place(axes: Axes, image: AxesImage, shape: tuple[int, ...]) -> None:
+    """Let a picture's points lie where the fields are that they stand for."""
+    (rows, cols), side = shape, _side(shape)
+    height, width = side * (-(-rows // side)), side * (-(-cols // side))
+    image.set_extent((-0.5, width - 0.5, height - 0.5, -0.5))
+    axes.set(xlim=(-0.5, cols - 0.5), ylim=(rows - 0.5, -0.5))
+    axes.grid(visible=False)
+
+
+def _side(shape: tuple[int, ...]) -> int:
+    return -(-max(shape) // _MOST)
+
+
+def _thinned(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Give the greatest value of each square, as many as a picture has points."""
+    side = _side(values.shape)
+    if side == 1:
+        return values
+    rows, cols = np.arange(0, values.shape[0], side), np.arange(0, values.shape[1], side)
+    across = np.maximum.reduceat(values, cols, axis=1)
+    return np.asarray(np.maximum.reduceat(across, rows, axis=0))
+
+
+def _cost(weights: NDArray[np.float64]) -> np.ma.MaskedArray:
+    return np.ma.masked_equal(_thinned(weights), 1.0)
+
+
+def _tint(unknown: NDArray[np.bool_]) -> NDArray[np.float64]:
+    return np.asarray(_thinned(unknown.astype(np.float64))[..., None] * np.array(UNKNOWN))
+
+
+def map_legend(weights: NDArray[np.float64]) -> list[Patch]:
+    """Say what the colours of a map mean.
+
+    Parameters
+    ----------
+    weights : (rows, cols) float64
+        As of `draw_map`.
+
+    Returns
+    -------
+    list of matplotlib.patches.Patch
+        Obstacles if there are any, and each weight; of more than three the least and the greatest.
+    """
+    obstacles = weights == 1
+    handles = [Patch(facecolor=_OBSTACLE, label="obstacle (weight 1)")] if obstacles.any() else []
+    # Start and target are always preferred; a legend for them alone would say little.
+    kinds = np.unique(weights[~obstacles])
+    kinds = kinds[kinds > 0] if len(kinds) <= 3 else np.array([kinds[0], kinds[-1]])
+    return handles + [
+        Patch(facecolor=_COST(kind), edgecolor="#98a1b0", label=f"free (weight {kind:g})")
+        for kind in kinds
+    ]
+
+
+def mark_ends(axes: Axes, start: tuple[int, int] | None, target: tuple[int, int] | None) -> None:
+    """Mark the start with S and the target with T, where there are any.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Where the map is drawn.
+    start, target : (x, y), optional
+        Fields.
+    """
+    for letter, place in (("S", start), ("T", target)):
+        if place is None:
+            continue
+        axes.text(
+            *place, letter, ha="center", va="center", color="white", fontsize=9, weight="bold",
+            bbox={"boxstyle": "circle,pad=0.25", "facecolor": "black", "linewidth": 0},
+            clip_on=False,
+        )  # fmt: skip
+
+
+def draw_path(axes: Axes, path: NDArray[np.int32], way_points: NDArray[np.int32]) -> Line2D:
+    """Draw a path.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Where the map is drawn.
+    path : (n, 2) int32
+        Fields as (x, y).
+    way_points : (w, 2) int32
+        Points on it that are marked.
+
+    Returns
+    -------
+    matplotlib.lines.Line2D
+        The path's line.
+    """
+    (line,) = axes.plot(*path.T, color=PATH, linewidth=1.8, label="path")
+    if len(way_points):
+        axes.plot(*way_points.T, "o", color=POINT, markersize=5, label="way points")
+    return line
+
+
+def draw_picture(axes: Axes, obstacles: NDArray[np.bool_], grown: NDArray[np.bool_] | None) -> None:
+    """Draw obstacles white on black, and what they grew by in a colour; all (rows, cols)."""
+    picture = np.zeros((*obstacles.shape, 3))
+    if grown is not None:
+        picture[grown] = to_rgb(GROWN)
+    picture[obstacles] = 1.0
+    axes.imshow(picture, interpolation="nearest")
+    axes.grid(visible=False)
+    axes.set(xticks=[], yticks=[])
+
+
+def draw_lines(axes: Axes, points: NDArray[np.int32], edges: NDArray[np.int32]) -> None:
+    """Draw lines of a graph, and its points."""
+    for i, j in edges:
+        axes.plot(*points[[i, j]].T, color=LINE, linewidth=0.4)
+    axes.plot(*points.T, "o", color=POINT, markersize=2.5)
