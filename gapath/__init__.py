@@ -11,30 +11,35 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     __version__: str
-    from gapath.api import load_map, plan
+    from gapath.api import drive, load_map, plan
+    from gapath.driving.retold import Drive
     from gapath.errors import InputError
     from gapath.grid import GridMap
     from gapath.problem import CornerCutting, Plan, PlanStatus, Problem
 
 __all__ = [
     "CornerCutting",
+    "Drive",
     "GridMap",
     "InputError",
     "Plan",
     "PlanStatus",
     "Problem",
     "__version__",
+    "drive",
     "load_map",
     "plan",
 ]
 
 _HOMES = {
     "CornerCutting": "problem",
+    "Drive": "driving.retold",
     "GridMap": "grid",
     "InputError": "errors",
     "Plan": "problem",
     "PlanStatus": "problem",
     "Problem": "problem",
+    "drive": "api",
     "load_map": "api",
     "plan": "api",
 }

@@ -23,8 +23,12 @@ SAME_SIGNATURE = {("benchmarks/rivals/textbook.py", "evolve")}
 WITH_BRACKETS = ("pipelines/papers/names.py", "gapath/components.py")
 """The first writes names for people, what differs behind them; the second reads those of fields."""
 
-NAMED_OTHERWISE = {("gapath/__init__.py", "plan")}
-"""The library's function, not the task."""
+NAMED_OTHERWISE = {
+    ("gapath/__init__.py", "plan"),
+    ("gapath/__init__.py", "drive"),
+    ("gapath/api.py", "drive"),
+}
+"""The library's functions and a group of settings, not the tasks."""
 
 
 def folders(root, *tops):

@@ -6,9 +6,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from gapath.components import build
+from gapath.discovery import reader_of, yaml_values
 from gapath.grid import Field, GridMap, Table
 from gapath.kernels.field_of_view import follow, sense
 from gapath.kernels.units import OBSTACLE, SCALE
+
+KNOWN = "drive.known_map"
+"""The setting that names what the robot knows before it starts."""
 
 
 class Looks(NamedTuple):
@@ -171,6 +176,32 @@ class KnownMap:
         dearer._table[rows, cols] = np.where(before >= OBSTACLE, OBSTACLE, after)
         dearer.table = _read_only(dearer._table)
         return dearer
+
+
+def read_known_map(path: str) -> GridMap:
+    """Read what a robot knows before it starts: what that map calls unknown stays unknown.
+
+    Parameters
+    ----------
+    path : str
+        A map file.
+
+    Returns
+    -------
+    GridMap
+        Its obstacles are known, everything else is not.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be used.
+    """
+    kind = reader_of(path, KNOWN)
+    values = yaml_values("map", kind) | {"path": path}
+    if "unknown" in values:
+        values["unknown"] = "free"
+    grid: GridMap = build("map", values, KNOWN).read()
+    return grid
 
 
 def _read_only(table: Table) -> Table:

@@ -4,11 +4,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gapath.driving.drive import Driven, Frame
+from gapath.driving.drive import Driven
 from gapath.events import Mode, Outcome
-from gapath.planning.path import path_weights
+from gapath.planning.path import path_weights, without_stands
 from gapath.problem import Plan, PlanStatus
 from gapath.task import Batch, Row, head
 
@@ -69,7 +68,7 @@ def drive_row(batch: Batch, trial: int, driven: Driven, optimum: Plan) -> DriveR
     """
     frames = driven.frames
     reached = driven.outcome is Outcome.REACHED
-    trail = _without_stands(frames)
+    trail = without_stands(np.array([frame.place for frame in frames], dtype=np.int32))
     status = PlanStatus.FOUND if reached else PlanStatus.NOT_FOUND
     passed = Plan(status, trail, path_weights(batch.problem.map, trail))
     decisions = [frame.decision for frame in frames if frame.decision]
@@ -101,11 +100,3 @@ def drive_row(batch: Batch, trial: int, driven: Driven, optimum: Plan) -> DriveR
         cost=passed.cost,
         compute_time_s=driven.compute_time_s,
     )
-
-
-def _without_stands(frames: list[Frame]) -> NDArray[np.int32]:
-    trail = [frames[0].place]
-    for frame in frames[1:]:
-        if frame.place != trail[-1]:
-            trail.append(frame.place)
-    return np.array(trail, dtype=np.int32)

@@ -19,7 +19,7 @@ from gapath.errors import require
 from gapath.pictures.board import draw_path
 from gapath.pictures.shown import text_of
 
-FRAMES = 80
+FRAMES = 60
 """Pictures that an animation has at most."""
 
 _WIDTH, _HEIGHT, _DPI = 6.0, 7.0, 90

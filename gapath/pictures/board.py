@@ -31,7 +31,7 @@ def draw_map(axes: Axes, weights: NDArray[np.float64]) -> AxesImage:
     Returns
     -------
     matplotlib.image.AxesImage
-        The picture, for `redraw_map`.
+        The picture.
     """
     image = axes.imshow(_cost(weights), cmap=_COST, vmin=0, vmax=1, interpolation="nearest")
     _place(axes, image, weights.shape)
@@ -39,21 +39,11 @@ def draw_map(axes: Axes, weights: NDArray[np.float64]) -> AxesImage:
     return image
 
 
-def redraw_map(image: AxesImage, weights: NDArray[np.float64]) -> None:
-    """Give a picture that `draw_map` drew other weights, (rows, cols) as before."""
-    image.set_data(_cost(weights))
-
-
 def draw_unknown(axes: Axes, unknown: NDArray[np.bool_]) -> AxesImage:
-    """Tint the fields of a map that are unknown, (rows, cols); `retint` changes which."""
+    """Tint the fields of a map that are unknown, (rows, cols)."""
     image = axes.imshow(_tint(unknown), interpolation="nearest")
     _place(axes, image, unknown.shape)
     return image
-
-
-def retint(image: AxesImage, unknown: NDArray[np.bool_]) -> None:
-    """Tint other fields than `draw_unknown` did, (rows, cols) as before."""
-    image.set_data(_tint(unknown))
 
 
 def _place(axes: Axes, image: AxesImage, shape: tuple[int, ...]) -> None:
@@ -152,6 +142,51 @@ def draw_path(axes: Axes, path: NDArray[np.int32], way_points: NDArray[np.int32]
     if len(way_points):
         axes.plot(*way_points.T, "o", color=POINT, markersize=5, label="way points")
     return line
+
+
+class Robot:
+    """A robot on a map of which it knows a part, as an animation shows it.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Where the true map is drawn.
+    shape : (rows, cols)
+        Of the map.
+    """
+
+    def __init__(self, axes: Axes, shape: tuple[int, int]) -> None:
+        (self._map,) = axes.images
+        self._unknown = draw_unknown(axes, np.zeros(shape, dtype=np.bool_))
+        (self._path,) = axes.plot([], [], color=POINT, linestyle=":", linewidth=1.5)
+        (self._way,) = axes.plot([], [], color=PATH, linewidth=1.8)
+        (self._place,) = axes.plot([], [], "o", color=PATH, markersize=7)
+
+    def show(
+        self,
+        weights: NDArray[np.float64],
+        known: NDArray[np.float64],
+        places: NDArray[np.int32],
+        path: NDArray[np.int32],
+    ) -> None:
+        """Show a moment.
+
+        Parameters
+        ----------
+        weights : (rows, cols) float64
+            The true map, seen where the robot knows nothing.
+        known : (rows, cols) float64
+            What it knows; NaN where it knows nothing.
+        places : (n, 2) int32
+            Where it was, as (x, y), the last one where it is.
+        path : (m, 2) int32
+            The path that it follows.
+        """
+        unknown = np.isnan(known)
+        self._map.set_data(_cost(np.where(unknown, weights, known)))
+        self._unknown.set_data(_tint(unknown))
+        for line, points in ((self._path, path), (self._way, places), (self._place, places[-1:])):
+            line.set_data(*points.T)
 
 
 def draw_picture(axes: Axes, obstacles: NDArray[np.bool_], grown: NDArray[np.bool_] | None) -> None:

@@ -30,6 +30,23 @@ def path_weights(grid: GridMap, path: NDArray[np.int32]) -> float:
     return int(grid.table[path[:, 1], path[:, 0]].sum(dtype=np.int64)) / SCALE
 
 
+def without_stands(places: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Leave out every place that repeats the one before.
+
+    Parameters
+    ----------
+    places : (n, 2) int32
+        Fields or way points as (x, y), n >= 1.
+
+    Returns
+    -------
+    (m, 2) int32
+        The others, in order.
+    """
+    moved = (np.diff(places, axis=0) != 0).any(axis=1)
+    return np.asarray(places[np.concatenate(([True], moved))])
+
+
 def octile_length(path: NDArray[np.int32]) -> float:
     """Measure a path: 1 for a straight step, sqrt(2) for a diagonal one.
 

@@ -58,7 +58,7 @@ def method_of(
         The YAML of the task's first group, and what differs from it and from the usual values of
         the other groups.
     """
-    plain = yaml.safe_load((files("gapath.conf") / "config.yaml").read_text("utf-8"))
+    plain = usual_values()
     given: dict[str, Value] = {"corner_cutting": config.get("corner_cutting")}
     usual: dict[str, Value] = {"corner_cutting": plain["corner_cutting"]}
     for group in task.groups:
@@ -74,6 +74,13 @@ def method_of(
     if given.get("drive.known_map"):
         given["drive.known_map"] = _title(str(given["drive.known_map"]))
     return Method(str(choices[task.groups[0]]), _changes(given, usual))
+
+
+def usual_values() -> dict[str, Any]:
+    """Read ``conf/config.yaml``: what is set where nobody says otherwise."""
+    text = (files("gapath.conf") / "config.yaml").read_text("utf-8")
+    values: dict[str, Any] = yaml.safe_load(text)
+    return values
 
 
 def _within(key: str, settings: Collection[str]) -> bool:

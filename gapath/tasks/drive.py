@@ -10,8 +10,8 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from gapath.components import build, typed
-from gapath.discovery import reader_of, yaml_values
 from gapath.driving.drive import Driven, Sensor, drive
+from gapath.driving.known_map import KNOWN, read_known_map
 from gapath.driving.navigation import Navigator
 from gapath.driving.row import DriveRow, drive_row
 from gapath.driving.told import drive_events
@@ -34,9 +34,6 @@ from gapath.planning.planner import Particular
 from gapath.planning.shortest_path import shortest_path
 from gapath.problem import Plan, Problem
 from gapath.task import Batch, Trial
-
-KNOWN = "drive.known_map"
-"""The setting that names what the robot knows before it starts."""
 
 LEAST_STEPS, MOST_STEPS = 2000, 10**6
 """The smallest step limit that a map's size gives, and the largest of all."""
@@ -127,9 +124,14 @@ class Task:
     @classmethod
     def make(cls, settings: Mapping[str, Any]) -> Self:
         """Make it from nested settings; raises InputError."""
-        drive: DriveSettings = typed(DriveSettings, settings["drive"], "drive")
+        return cls.of(build("navigator", settings["navigator"], "navigator"), settings["drive"])
+
+    @classmethod
+    def of(cls, navigator: Navigator, settings: Mapping[str, Any]) -> Self:
+        """Make it from a navigator and the settings of ``drive``; raises InputError."""
+        drive: DriveSettings = typed(DriveSettings, settings, "drive")
         return cls(
-            build("navigator", settings["navigator"], "navigator"),
+            navigator,
             drive.sensor,
             drive.changes,
             drive.step_limit,
@@ -154,7 +156,7 @@ class Task:
         """
         if isinstance(self.navigator, Particular):
             self.navigator.check(problem)
-        if self.known_map is not None:
+        if KNOWN in problem.maps:
             true, known = problem.map, problem.maps[KNOWN]
             require(
                 (known.rows, known.cols) == (true.rows, true.cols),
@@ -199,13 +201,43 @@ class Task:
             In order.
         """
         problem, seed = batch.problem, batch.seed
-        limit = self.step_limit or usual_limit(problem.map.rows * problem.map.cols)
-        self._drive(problem, seed, 0, min(WARM_UP, limit))
+        self.once(problem, seed, 0, WARM_UP)
         for trial in range(batch.trials):
-            driven = self._drive(problem, seed, trial, limit)
+            driven = self.once(problem, seed, trial)
             row = drive_row(batch, trial, driven, optimum)
             events = partial(drive_events, driven, problem.map.cols, seed, trial)
             yield Trial(row, row.reached, len(driven.frames), events)
+
+    def once(
+        self, problem: Problem, seed: int, trial: int = 0, most_steps: int = MOST_STEPS
+    ) -> Driven:
+        """Drive with the random streams of one trial.
+
+        Parameters
+        ----------
+        problem : Problem
+            The true map, start and target; among its maps what the robot knows, if anything.
+        seed, trial : int
+            Keys of the streams.
+        most_steps : int
+            Steps after which to stop before the limit.
+
+        Returns
+        -------
+        Driven
+            How it ended, and every step.
+        """
+        return drive(
+            problem,
+            self.navigator,
+            self.sensor,
+            self.changes,
+            seed,
+            trial,
+            min(most_steps, self.step_limit or usual_limit(problem.map.weights.size)),
+            self.unknown_weight,
+            problem.maps.get(KNOWN),
+        )
 
     def summary(self, rows: list[DriveRow]) -> dict[str, object]:
         """Sum drives up for the terminal: label -> value."""
@@ -266,19 +298,6 @@ class Task:
         stayed = sum(row.never_left for row in rows)
         return f" ({f'{stayed} ' if len(rows) > 1 else ''}{NEVER_LEFT})" if stayed else ""
 
-    def _drive(self, problem: Problem, seed: int, trial: int, step_limit: int) -> Driven:
-        return drive(
-            problem,
-            self.navigator,
-            self.sensor,
-            self.changes,
-            seed,
-            trial,
-            step_limit,
-            self.unknown_weight,
-            problem.maps.get(KNOWN),
-        )
-
 
 def usual_limit(fields: int) -> int:
     """Give the step limit of a map on which none is set.
@@ -304,29 +323,3 @@ def _by_outcome(rows: list[DriveRow]) -> dict[str, list[DriveRow]]:
 
 def _median_time(rows: list[DriveRow]) -> str:
     return f"{1000 * statistics.median(row.compute_time_s for row in rows):.3g} ms"
-
-
-def read_known_map(path: str) -> GridMap:
-    """Read what a robot knows before it starts: what that map calls unknown stays unknown.
-
-    Parameters
-    ----------
-    path : str
-        A map file.
-
-    Returns
-    -------
-    GridMap
-        Its obstacles are known, everything else is not.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be used.
-    """
-    kind = reader_of(path, KNOWN)
-    values = yaml_values("map", kind) | {"path": path}
-    if "unknown" in values:
-        values["unknown"] = "free"
-    grid: GridMap = build("map", values, KNOWN).read()
-    return grid

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from gapath.events import Evolved, RunStarted, Surveyed, TrialFinished
 from gapath.pipelines.reading.logs import events_of, run_start
+from gapath.planning.path import without_stands
 from gapath.problem import Graph
 from gapath.store.records import RunRecord
 
@@ -63,11 +64,5 @@ def read_first(run: RunRecord) -> First:
         elif isinstance(event, TrialFinished) and event.answer.feasible:
             if not len(best):  # a search: its path is all there is
                 way_points = event.answer.path
-            return First(start, graph, _once(way_points), best)
+            return First(start, graph, without_stands(way_points), best)
     return First(start, graph, np.empty((0, 2), dtype=np.int32), np.empty(0))
-
-
-def _once(points: NDArray[np.int32]) -> NDArray[np.int32]:
-    """Leave out points that repeat the one before."""
-    moved = (np.diff(points, axis=0) != 0).any(axis=1)
-    return points[np.concatenate(([True], moved))]
