@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from gapath.driving.retold import Drive
     from gapath.errors import InputError
     from gapath.grid import GridMap
+    from gapath.pipelines.reading.library import Run, run, runs
     from gapath.problem import CornerCutting, Plan, PlanStatus, Problem
 
 __all__ = [
@@ -25,10 +26,13 @@ __all__ = [
     "Plan",
     "PlanStatus",
     "Problem",
+    "Run",
     "__version__",
     "drive",
     "load_map",
     "plan",
+    "run",
+    "runs",
 ]
 
 _HOMES = {
@@ -39,9 +43,12 @@ _HOMES = {
     "Plan": "problem",
     "PlanStatus": "problem",
     "Problem": "problem",
+    "Run": "pipelines.reading.library",
     "drive": "api",
     "load_map": "api",
     "plan": "api",
+    "run": "pipelines.reading.library",
+    "runs": "pipelines.reading.library",
 }
 
 

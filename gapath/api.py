@@ -184,11 +184,10 @@ def drive(
     own, others = _drive_settings(settings)
     if isinstance(navigator, str):
         values = yaml_values("navigator", navigator)
-        names = [
-            name for name in [*_drive_names(usual_values()["drive"]), *values] if name != "kind"
-        ]
+        usual = _drive_names(usual_values()["drive"])
+        known = [name for name in (*usual, *values) if name != "kind"]
         for name in others:
-            require(name in values, f"navigator.{name}", "an unknown name", one_of(name, names))
+            require(name in values, f"navigator.{name}", "an unknown name", one_of(name, known))
         navigator = cast(Navigator, build("navigator", values | others, "navigator"))
     else:
         good = all(hasattr(type(navigator), name) for name in ("complete", "begin", "step"))
@@ -202,8 +201,8 @@ def drive(
 
 def _drive_settings(given: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
     """Split settings into those of ``drive``, all of them and nested, and a navigator's."""
-    values = usual_values()["drive"]
-    names, others = _drive_names(values), {}
+    values, others = usual_values()["drive"], {}
+    names = _drive_names(values)
     for name, value in given.items():
         if name not in names:
             others[name] = value

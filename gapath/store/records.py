@@ -288,6 +288,11 @@ def read_record(folder: Path) -> RunRecord:
     return RunRecord(folder, status, manifest, fault)
 
 
+def is_run(folder: Path) -> bool:
+    """Tell whether a folder is that of a run, whole or not."""
+    return any((folder / mark).exists() for mark in (STATUS, MANIFEST, CONFIG, TRIALS))
+
+
 def find_runs(outputs: Path) -> list[RunRecord]:
     """Find the run folders below a folder, sorted by experiment and key.
 
@@ -307,10 +312,8 @@ def find_runs(outputs: Path) -> list[RunRecord]:
         If there is no such folder, or no run in it.
     """
     require(outputs.is_dir(), outputs, "no such folder", "a folder with run folders")
-    marks = (STATUS, MANIFEST, CONFIG, TRIALS)
     try:
-        folders = sorted(path for path in outputs.glob("*/*") if path.is_dir())
-        folders = [path for path in folders if any((path / mark).exists() for mark in marks)]
+        folders = sorted(path for path in outputs.glob("*/*") if is_run(path))
         runs = [read_record(path) for path in folders]
     except OSError as error:
         raise InputError(error.filename or outputs, error.strerror, "readable folders") from error
