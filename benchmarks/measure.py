@@ -4,9 +4,11 @@ import os
 import platform
 import random
 import statistics
+import sysconfig
 import time
 from collections.abc import Callable, Sequence
 from importlib import metadata
+from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -22,6 +24,9 @@ from gapath.problem import Problem
 
 MAPS = ("kg18_test1", "kg18_test2", "kg18_test3", "kg18_test4")
 SETTINGS = ("ga1", "ga2", "ga3")
+COMMAND = str(Path(sysconfig.get_path("scripts")) / "gapath")
+"""The command of this environment."""
+
 PACKAGES = ("gapath", "numba", "numpy", "scipy", "scikit-image")
 
 Row: TypeAlias = dict[str, Any]

@@ -18,12 +18,15 @@ from typing import (
     runtime_checkable,
 )
 
+from numpy.typing import ArrayLike
+
 from gapath.discovery import kinds, load
 from gapath.errors import InputError, one_of, require, require_all
 from gapath.events import Event, Finished, RunStarted, TrialStarted
 from gapath.grid import GridMap
 from gapath.planning.path import octile_length
 from gapath.problem import Plan, Problem
+from gapath.store.results import Results
 
 Measure = Callable[[Problem, Plan], float]
 """Measures a path, whoever found it."""
@@ -167,6 +170,30 @@ def columns(row: type[Row]) -> dict[str, type]:
     for name in metrics():
         require(name not in own, f"metric {name}", "a column of the rows", "another name")
     return own | dict.fromkeys(metrics(), float)
+
+
+_NO_RESULTS = ("map_instance", "seed", "trial")
+"""Numbers in the rows that name something."""
+
+
+def results(task: type["Task"], trials: Mapping[str, ArrayLike]) -> Results:
+    """Sum up trials.
+
+    Parameters
+    ----------
+    task : type
+        Their task.
+    trials : mapping of str to (n,) array
+        The columns of their rows; one that is missing has no sum.
+
+    Returns
+    -------
+    Results
+        Its sums are those of all columns that hold numbers or booleans.
+    """
+    numeric = [name for name, kind in columns(task.row).items() if kind is not str]
+    kept = [name for name in numeric if name in trials and name not in _NO_RESULTS]
+    return Results.of(trials[task.success], {name: trials[name] for name in kept})
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,15 +8,12 @@ with the import. The targets: uncached 7 s, cached 1.2 s, the import 0.4 s.
 import os
 import subprocess
 import sys
-import sysconfig
 import tempfile
 from collections.abc import Sequence
 from functools import partial
-from pathlib import Path
 
-from benchmarks.measure import Calls, Row, interleave, quartiles, timed
+from benchmarks.measure import COMMAND, Calls, Row, interleave, quartiles, timed
 
-COMMAND = str(Path(sysconfig.get_path("scripts")) / "gapath")
 SETTINGS = ("map=kg18_test3", "planner=ga3", "recorder=none", "force=true")
 
 

@@ -26,8 +26,8 @@ from gapath.discovery import component_of, conf_packages, kinds, yaml_names
 from gapath.errors import InputError, require
 from gapath.running.config import HOW, Run, conf_folder, make_run
 from gapath.running.experiment import Execution, execute, run_folder
-from gapath.store.records import RunState
 from gapath.store.runfolder import RunFolder
+from gapath.store.status import RunState
 from gapath.task import find_task
 
 BAD_INPUT, FAILED, INTERRUPTED = 2, 1, 130

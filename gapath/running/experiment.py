@@ -3,7 +3,7 @@
 import traceback
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,19 +21,16 @@ from gapath.store.keys import run_key, setting_hash, versions
 from gapath.store.records import (
     CONFIG,
     MANIFEST,
-    STATUS,
     TRIALS,
     FileEntry,
     Manifest,
-    RunState,
-    Status,
-    now,
 )
 from gapath.store.rows import parquet
 from gapath.store.runfolder import Busy, RunFolder
 from gapath.store.settings import nested, tabular
+from gapath.store.status import STATUS, RunState, Status, now
 from gapath.store.whole import is_whole
-from gapath.task import Batch, columns
+from gapath.task import Batch, columns, results
 
 
 @dataclass(frozen=True)
@@ -154,10 +151,13 @@ def _execute_held(run: Run, folder: RunFolder, command: str, progress: bool) -> 
             rows, recorded = _do_trials(run, optimum, folder, progress)
         place = folder.path.resolve()  # recorders may read what they have written
         late = {p: d for p, d in read.items() if not Path(p).resolve().is_relative_to(place)}
-        write_whole(folder.path / TRIALS, _table(run, rows))
+        values = [row.values() for row in rows]
+        write_whole(folder.path / TRIALS, _table(run, values))
         names = [CONFIG, TRIALS, *recorded]
         folder.keep_only([*names, STATUS, MANIFEST])
-        _manifest(run, folder, command, names, late).write(folder)
+        manifest = _manifest(run, folder, command, names, late)
+        came = results(type(run.task), {name: [row[name] for row in values] for name in values[0]})
+        replace(manifest, results=came).write(folder)
         state = RunState.DONE if optimum.feasible else RunState.INFEASIBLE
         Status(state, started, now()).write(folder)
         return Execution(folder.path, state, rows, [*names, MANIFEST, STATUS])
@@ -216,12 +216,12 @@ def _do_trials(
         raise
 
 
-def _table(run: Run, rows: list[Any]) -> bytes:
+def _table(run: Run, rows: list[dict[str, Any]]) -> bytes:
     """Give the trials' rows, and each setting as a column unless it stands in them already."""
     types = columns(run.task.row)
     there = {*types, "name"}  # the rows' experiment
     own = {key: value for key, value in tabular(run.settings).items() if key not in there}
-    return parquet(types, [row.values() for row in rows], own)
+    return parquet(types, rows, own)
 
 
 def _manifest(
@@ -251,4 +251,5 @@ def _manifest(
             name: FileEntry(folder.sha256(name), (folder.path / name).stat().st_size)
             for name in names
         },
+        settings=dict(run.settings),
     )

@@ -4,13 +4,15 @@ from collections.abc import Collection, Iterable, Mapping
 from importlib.resources import files
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import yaml
 
 from gapath.discovery import yaml_names, yaml_values
 from gapath.store.settings import Value, flatten
-from gapath.task import Task
+
+if TYPE_CHECKING:
+    from gapath.task import Task  # which takes long, and is not needed to write names
 
 _SHOWN_APART = ("path", "start", "target", "scenario", "problem", "map_class", "drawing", "number",
                 "instance")  # fmt: skip
@@ -33,7 +35,7 @@ class Method(NamedTuple):
 
 
 def method_of(
-    task: type[Task],
+    task: "type[Task]",
     config: Mapping[str, Any],
     choices: Mapping[str, str | None],
     overridden: Collection[str] = (),

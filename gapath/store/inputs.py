@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from gapath.discovery import conf_packages, other_folders
-from gapath.events import Settings
+from gapath.store.settings import Flat
 
 Inputs: TypeAlias = Mapping[str, str]
 """The files that a run reads: path, as it was opened -> SHA-256 of the content."""
@@ -66,7 +66,7 @@ def contents(inputs: Inputs) -> list[str]:
     return sorted(f"{Path(path).name} {digest}" for path, digest in inputs.items())
 
 
-def without_paths(settings: Settings, inputs: Inputs) -> Settings:
+def without_paths(settings: Flat, inputs: Inputs) -> Flat:
     """Leave out settings that name an input, of which its content says more."""
     return {key: value for key, value in settings.items() if value not in inputs}
 

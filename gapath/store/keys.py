@@ -7,10 +7,9 @@ from importlib import metadata
 from pathlib import Path
 
 from gapath.discovery import other_files, other_packages
-from gapath.events import Settings
 from gapath.problem import Problem
 from gapath.store.inputs import Inputs, contents, without_paths
-from gapath.store.settings import text_of
+from gapath.store.settings import Flat, text_of
 
 VERSIONED = ("gapath", "numpy", "numba", "mcap", "rosbags", "rerun-sdk", "hydra-core", "pyarrow")
 
@@ -56,7 +55,7 @@ def versions() -> dict[str, str]:
     return {"python": platform.python_version(), "code": code_hash(), **found, **others}
 
 
-def setting_hash(settings: Settings, problem: Problem, inputs: Inputs) -> str:
+def setting_hash(settings: Flat, problem: Problem, inputs: Inputs) -> str:
     """Hash what two runs must share to try the same thing, with whatever code and however often.
 
     Parameters
@@ -78,7 +77,7 @@ def setting_hash(settings: Settings, problem: Problem, inputs: Inputs) -> str:
     return _hash([text_of(dict(sorted(tried.items()))), *_posed(problem), *contents(inputs)])
 
 
-def run_key(settings: Settings, problem: Problem, inputs: Inputs) -> str:
+def run_key(settings: Flat, problem: Problem, inputs: Inputs) -> str:
     """Name a run by everything that its results depend on.
 
     Parameters

@@ -1,41 +1,23 @@
 """What a run folder says of its run: manifest, status, settings; and which folders there are."""
 
 import contextlib
-import json
-from collections.abc import Mapping
+import os
+import stat
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
-from datetime import UTC, datetime
-from enum import StrEnum
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 from gapath.discovery import kinds
 from gapath.errors import InputError, require
-from gapath.events import Settings
-from gapath.store.runfolder import LOCK, RunFolder, is_locked
-from gapath.store.settings import Value, read_settings
+from gapath.store.results import Results
+from gapath.store.runfolder import RunFolder
+from gapath.store.settings import Flat, Value, read_settings
 from gapath.store.shape import shaped
+from gapath.store.status import STATUS, WHOLE, RunState, Status, load
 
-STATUS, MANIFEST, CONFIG, TRIALS = "status.json", "manifest.json", "config.yaml", "trials.parquet"
-"""Names of the files that every run folder has."""
-
-
-class RunState(StrEnum):
-    """How far a run is; SKIPPED (it is whole) and BUSY (another works on it) only of executions."""
-
-    RUNNING = "running"
-    DONE = "done"
-    INFEASIBLE = "infeasible"
-    FAILED = "failed"
-    INTERRUPTED = "interrupted"
-    UNKNOWN = "unknown"
-    SKIPPED = "skipped"
-    BUSY = "busy"
-
-
-WHOLE = (RunState.DONE, RunState.INFEASIBLE)
-"""States of runs that were finished."""
+MANIFEST, CONFIG, TRIALS = "manifest.json", "config.yaml", "trials.parquet"
+"""Names of files that every run folder has, beside `STATUS`."""
 
 
 @dataclass(frozen=True)
@@ -86,6 +68,11 @@ class Manifest:
         read them once a process, but the run is done anew where one has changed.
     files : mapping of str to FileEntry
         All files but the manifest and the status.
+    settings : mapping of str to str, int, float, bool or None
+        The settings, flat. Who reads runs reads them here; ``config.yaml`` says the same to
+        people, and is read for what earlier versions made: then None stands here.
+    results : Results
+        What the trials of ``trials.parquet`` come to; None of earlier versions.
     """
 
     key: str
@@ -108,6 +95,8 @@ class Manifest:
     method_inputs: Mapping[str, str]
     late_inputs: Mapping[str, str]
     files: Mapping[str, FileEntry]
+    settings: Mapping[str, Value] | None = None
+    results: Results | None = None
 
     def write(self, folder: RunFolder) -> None:
         """Write it, whole."""
@@ -132,7 +121,7 @@ class Manifest:
         InputError
             If it cannot be read, or something is missing, of another type or out of range.
         """
-        found: Manifest = shaped(cls, _load(folder / MANIFEST), MANIFEST)
+        found: Manifest = shaped(cls, load(folder, MANIFEST), MANIFEST)
         known, task, trials, seed = kinds("task"), found.task, found.trials, found.seed
         require(task in known, f"{MANIFEST}, task", task, f"one of {', '.join(known)}")
         good = 1 <= trials <= 10**6
@@ -140,66 +129,9 @@ class Manifest:
         require(0 <= seed < 2**64, f"{MANIFEST}, seed", seed, "an integer in [0, 2^64)")
         where = f"{MANIFEST}, files"
         for name in found.files:
-            require(Path(name).name == name, where, name, "a name within the folder")
+            require("/" not in name, where, name, "a name within the folder")
         require(TRIALS in found.files, where, sorted(found.files), TRIALS)
         return found
-
-
-@dataclass(frozen=True)
-class Status:
-    """How far a run is: ``status.json``, written last of all.
-
-    Parameters
-    ----------
-    state : RunState
-        running, done, failed, interrupted or infeasible; unknown where none can be read.
-    started : str
-        When it began, as `now` gives it.
-    finished : str or None
-        When it ended.
-    message : str
-        What went wrong.
-    """
-
-    state: RunState
-    started: str
-    finished: str | None = None
-    message: str = ""
-
-    def write(self, folder: RunFolder) -> None:
-        """Write it, whole."""
-        folder.write_json(STATUS, asdict(self))
-
-    @classmethod
-    def read(cls, folder: Path) -> "Status":
-        """Read a folder's status.
-
-        Parameters
-        ----------
-        folder : Path
-            A run folder.
-
-        Returns
-        -------
-        Status
-            What it says; INTERRUPTED where a run says that it is running, but nobody holds its
-            lock; UNKNOWN without one that can be read.
-        """
-        try:
-            content = _load(folder / STATUS)
-        except InputError as error:
-            return cls(RunState.UNKNOWN, "", message=str(error))
-        given = content.get("state")
-        state = RunState(given) if given in list(RunState) else RunState.UNKNOWN
-        if state is RunState.RUNNING and not is_locked(folder / LOCK):
-            state = RunState.INTERRUPTED
-        texts = [str(content.get(name) or "") for name in ("started", "finished", "message")]
-        return cls(state, texts[0], texts[1] or None, texts[2].strip())
-
-    @property
-    def date(self) -> str:
-        """When it ended, else when it began."""
-        return self.finished or self.started
 
 
 @dataclass(frozen=True)
@@ -245,9 +177,10 @@ class RunRecord:
         return self.manifest
 
     @cached_property
-    def settings(self) -> Settings:
+    def settings(self) -> Flat:
         """Its settings, flat; raises InputError if they cannot be read."""
-        return read_settings(self.folder / CONFIG)
+        known = self.manifest.settings if self.manifest else None
+        return read_settings(self.folder / CONFIG) if known is None else known
 
     @property
     def bytes(self) -> int:
@@ -277,9 +210,9 @@ def read_record(folder: Path) -> RunRecord:
     try:
         manifest = Manifest.read(folder)
         for name, entry in sorted(manifest.files.items()):
-            path = folder / name
-            size = path.stat().st_size if path.is_file() else "no file"
-            require(size == entry.bytes, name, size, f"{entry.bytes} bytes, as the manifest says")
+            size = _size(f"{folder}/{name}")
+            if size != entry.bytes:
+                raise InputError(name, size, f"{entry.bytes} bytes, as the manifest says")
     except InputError as error:
         fault = str(error)
     if status.state not in WHOLE:
@@ -313,26 +246,24 @@ def find_runs(outputs: Path) -> list[RunRecord]:
     """
     require(outputs.is_dir(), outputs, "no such folder", "a folder with run folders")
     try:
-        folders = sorted(path for path in outputs.glob("*/*") if is_run(path))
-        runs = [read_record(path) for path in folders]
+        folders = [path for folder in _folders(outputs) for path in _folders(folder)]
+        runs = [run for run in map(read_record, folders) if run.manifest or is_run(run.folder)]
     except OSError as error:
         raise InputError(error.filename or outputs, error.strerror, "readable folders") from error
     require(bool(runs), outputs, "no runs", "run folders <experiment>/<key>/; `gapath` makes them")
     return runs
 
 
-def _load(path: Path) -> dict[str, Any]:
+def _folders(place: Path) -> Iterator[Path]:
+    """Give the folders within a folder, sorted; of one that must not be read, none."""
+    with contextlib.suppress(PermissionError), os.scandir(place) as entries:
+        for name in sorted(entry.name for entry in entries if entry.is_dir()):
+            yield place / name
+
+
+def _size(path: str) -> int | str:
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError as error:
-        raise InputError(path.name, "no file", "a file, as every finished run has one") from error
-    except (OSError, ValueError, RecursionError) as error:
-        raise InputError(path.name, type(error).__name__, "readable JSON") from error
-    require(isinstance(content, dict), path.name, type(content).__name__, "a JSON object")
-    loaded: dict[str, Any] = content
-    return loaded
-
-
-def now() -> str:
-    """Give the time as ISO 8601 in UTC, to the second."""
-    return datetime.now(UTC).isoformat(timespec="seconds")
+        found = os.stat(path)  # noqa: PTH116  # pathlib takes as long again
+    except FileNotFoundError:
+        return "no file"
+    return found.st_size if stat.S_ISREG(found.st_mode) else "no file"

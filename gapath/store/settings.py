@@ -14,10 +14,11 @@ from typing import Any, TypeAlias, cast
 import yaml
 
 from gapath.errors import InputError, require
-from gapath.events import Settings
 
 Value: TypeAlias = str | int | float | bool | None
+Flat: TypeAlias = Mapping[str, Value]
 
+_OF_LIST = re.compile(r"([^[]+)\[")
 _STEP = re.compile(r"\[(\d*)\]|\.?([^.\[\]]+)|\.$")
 
 
@@ -51,7 +52,7 @@ def flatten(value: object, name: str = "") -> dict[str, Value]:
     return {leaf: item for key, part in items for leaf, item in flatten(part, key).items()}
 
 
-def nested(settings: Settings) -> dict[str, Any]:
+def nested(settings: Flat) -> dict[str, Any]:
     """Undo `flatten`.
 
     Parameters
@@ -106,7 +107,7 @@ def _put(root: dict[str, Any], keys: list[str | int | None], name: str, value: V
         place = place[key]
 
 
-def tabular(settings: Settings) -> dict[str, Value]:
+def tabular(settings: Flat) -> dict[str, Value]:
     """Give settings as columns of a table have them: a value each, lists as JSON.
 
     Parameters
@@ -119,21 +120,26 @@ def tabular(settings: Settings) -> dict[str, Value]:
     dict of str to str, int, float, bool or None
         For example ``map.start``: "[0, 0]" instead of ``map.start[0]`` and ``map.start[1]``.
     """
-    return _tabular(nested(settings), "")
-
-
-def _tabular(value: Mapping[str, Any], prefix: str) -> dict[str, Value]:
     found: dict[str, Value] = {}
-    for key, item in value.items():
-        if isinstance(item, Mapping) and item:
-            found |= _tabular(item, f"{prefix}{key}.")
+    lists: dict[str, dict[str, Value]] = {}
+    for name, value in settings.items():
+        of_list = _OF_LIST.match(name)
+        if of_list:
+            found[of_list.group(1)] = None  # its place
+            lists.setdefault(of_list.group(1), {})[name] = value
+        elif name.endswith("."):
+            found[name[:-1]] = "{}"
         else:
-            plain = not isinstance(item, Mapping | list)
-            found[f"{prefix}{key}"] = cast(Value, item) if plain else json.dumps(item)
+            found[name] = value
+    for stem, items in lists.items():
+        part: Any = nested(items)
+        for key in stem.split("."):
+            part = part[key]
+        found[stem] = json.dumps(part)
     return found
 
 
-def text_of(settings: Settings) -> str:
+def text_of(settings: Flat) -> str:
     """Write flat settings as text, a line each, which is YAML too.
 
     Parameters

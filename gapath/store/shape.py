@@ -1,10 +1,12 @@
 """What a file of JSON says becomes a dataclass, if all of it has the types that this names."""
 
 from collections.abc import Mapping
-from dataclasses import fields, is_dataclass
-from typing import Any, get_args, get_origin, get_type_hints
+from dataclasses import is_dataclass
+from functools import lru_cache
+from types import NoneType, UnionType
+from typing import Any, NamedTuple, get_args, get_origin, get_type_hints
 
-from gapath.errors import require
+from gapath.errors import InputError, require
 
 
 def shaped(kind: Any, content: Any, where: str) -> Any:
@@ -13,8 +15,8 @@ def shaped(kind: Any, content: Any, where: str) -> Any:
     Parameters
     ----------
     kind : type
-        A dataclass, a Mapping from str, a plain type, or several plain types. Fields of
-        dataclasses and items of mappings may be all of these.
+        A dataclass, a Mapping from str, a plain type, several plain types, or one of these
+        or None. Fields of dataclasses and items of mappings may be all of these.
     content : object
         As `json.loads` gives it; of a dataclass, more than its fields is left out.
     where : str
@@ -30,15 +32,48 @@ def shaped(kind: Any, content: Any, where: str) -> Any:
     InputError
         If something is missing or of another type: names the place.
     """
-    if is_dataclass(kind) or get_origin(kind) is Mapping:
-        require(isinstance(content, dict), where, content, "a mapping")
-        if isinstance(kind, type):
-            hints = get_type_hints(kind)
-            names = [each.name for each in fields(kind)]
-            return kind(**{n: shaped(hints[n], content.get(n), f"{where}, {n}") for n in names})
-        inner = get_args(kind)[1]
-        return {n: shaped(inner, item, f"{where}, {n}") for n, item in content.items()}
-    kinds = get_args(kind) or (kind,)
-    right = ", ".join("null" if each is type(None) else each.__name__ for each in kinds)
-    require(type(content) in kinds, where, content, right)
-    return content
+    hint = _hint(kind)
+    if hint.shape is None or (content is None and NoneType in hint.plain):
+        if type(content) not in hint.plain:
+            right = ", ".join("null" if each is NoneType else each.__name__ for each in hint.plain)
+            raise InputError(where, content, right)
+        return content
+    require(isinstance(content, dict), where, content, "a mapping")
+    if get_origin(hint.shape) is Mapping:
+        inner = hint.parts[_ITEMS]
+        if inner.shape is None and set(map(type, content.values())).issubset(inner.plain):
+            return content
+        return {n: shaped(inner.kind, item, f"{where}, {n}") for n, item in content.items()}
+    made = {}
+    for name, part in hint.parts.items():
+        value = made[name] = content.get(name)
+        if type(value) not in part.plain:
+            made[name] = shaped(part.kind, value, f"{where}, {name}")
+    return hint.shape(**made)
+
+
+_ITEMS = "items"
+
+
+class _Hint(NamedTuple):
+    """A type hint, taken apart: ten thousand manifests ask for the same."""
+
+    kind: Any
+    shape: Any
+    """Its dataclass or Mapping; None without one."""
+    plain: tuple[type, ...]
+    """Its plain types."""
+    parts: "dict[str, _Hint]"
+    """The dataclass's fields; of a Mapping, `_ITEMS`."""
+
+
+@lru_cache
+def _hint(kind: Any) -> _Hint:
+    several = get_args(kind) if isinstance(kind, UnionType) else (kind,)
+    shapes = [each for each in several if is_dataclass(each) or get_origin(each) is Mapping]
+    shape = (shapes or [None])[0]
+    parts = get_type_hints(shape) if is_dataclass(shape) else {}
+    if get_origin(shape) is Mapping:
+        parts = {_ITEMS: get_args(shape)[1]}
+    plain = tuple(each for each in several if each not in shapes)
+    return _Hint(kind, shape, plain, {name: _hint(part) for name, part in parts.items()})

@@ -2,8 +2,9 @@
 
 from gapath.errors import InputError
 from gapath.store.inputs import unchanged
-from gapath.store.records import WHOLE, Manifest, Status
+from gapath.store.records import Manifest
 from gapath.store.runfolder import RunFolder
+from gapath.store.status import WHOLE, Status
 
 
 def is_whole(folder: RunFolder) -> bool:

@@ -9,9 +9,11 @@ import pandas as pd
 
 from gapath.errors import InputError
 from gapath.pipelines.reading.counted import superseded
+from gapath.pipelines.reading.names import told_apart
 from gapath.pipelines.reading.query import connect, quoted, refusal
-from gapath.pipelines.reading.results import Results, results_of
+from gapath.pipelines.reading.results import results_of
 from gapath.store.records import RunRecord
+from gapath.store.results import Results
 from gapath.store.settings import tabular
 
 _OWN = {
@@ -39,14 +41,15 @@ def run_frame(runs: Sequence[RunRecord]) -> pd.DataFrame:
         One row a run in the order given, the index `key` the name of its folder. Columns:
 
         - experiment, task, map, map_instance, start, target, method, preset, seed, trials, state
-          and date, as the manifest and the status say; of a run without a manifest what is known;
+          and date, as the manifest and the status say, names of maps and methods told apart; of
+          a run without a manifest what is known;
         - fault, why a run cannot be used, and superseded, the key of the run that counts in its
           place; null of all others;
         - every setting under its full name, lists as JSON, null where a run has none;
         - success, the share of trials that succeeded, and for every numeric column of the trials
           the mean over those where it is defined; null of runs that cannot be used.
     """
-    runs = [checked(run) for run in runs]
+    runs = _named([checked(run) for run in runs])
     keys = pd.Index([run.folder.name for run in runs], dtype="str", name="key")
     newer = {id(run): other.folder.name for run, other in superseded(runs)}
     own = [_own(run) | {"superseded": newer.get(id(run))} for run in runs]
@@ -111,6 +114,12 @@ def checked(run: RunRecord) -> RunRecord:
     return run
 
 
+def _named(runs: Sequence[RunRecord]) -> list[RunRecord]:
+    """Give the runs that can be used names that tell them apart."""
+    names = iter(told_apart([run for run in runs if not run.fault]))
+    return [run if run.fault else next(names) for run in runs]
+
+
 def _own(run: RunRecord) -> dict[str, Any]:
     known = vars(run.manifest) if run.manifest else {"experiment": run.folder.parent.name}
     return {**known, "state": str(run.state), "date": run.date, "fault": run.fault or None}
@@ -123,9 +132,11 @@ def _settings(run: RunRecord) -> Mapping[str, Any]:
         return {}
 
 
-def _means(results: Results) -> dict[str, float]:
-    means = {name: results.sums[name] / count for name, count in results.counts.items() if count}
-    return {"success": results.succeeded / results.trials, **means}
+def _means(came: Results) -> dict[str, float]:
+    counts, sums = came.counts, came.sums
+    means = {name: total / came.trials for name, total in sums.items() if name not in counts}
+    partly = {name: sums[name] / count for name, count in counts.items() if count}
+    return {"success": came.succeeded / came.trials, **means, **partly}
 
 
 def _names(rows: Sequence[Mapping[str, Any]]) -> list[str]:

@@ -26,8 +26,9 @@ from gapath.problem import Plan, Problem, no_path
 from gapath.recorders.mcap import FILE
 from gapath.running.config import HOW, read_problem, split
 from gapath.running.naming import usual_values
-from gapath.store.records import RunRecord, Status, find_runs, is_run, read_record
+from gapath.store.records import RunRecord, find_runs, is_run, read_record
 from gapath.store.settings import Value, nested, tabular
+from gapath.store.status import Status
 
 if TYPE_CHECKING:
     from gapath.pictures.shown import Axes

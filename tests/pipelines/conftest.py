@@ -13,17 +13,15 @@ from gapath.running.naming import Method
 from gapath.store.records import (
     CONFIG,
     MANIFEST,
-    STATUS,
     TRIALS,
     FileEntry,
     Manifest,
     RunRecord,
-    RunState,
-    Status,
     find_runs,
 )
 from gapath.store.runfolder import LOCK, RunFolder
 from gapath.store.settings import nested
+from gapath.store.status import STATUS, RunState, Status
 
 from .synthetic import (
     MAPS,

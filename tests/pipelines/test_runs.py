@@ -7,7 +7,8 @@ import pytest
 from gapath.errors import InputError
 from gapath.pipelines.reading.listing import listing
 from gapath.pipelines.reading.logs import events_of, read_logs, run_start
-from gapath.store.records import RunState, find_runs
+from gapath.store.records import find_runs
+from gapath.store.status import RunState
 
 from .conftest import collect, sign, write_status
 
@@ -105,6 +106,10 @@ def change(run, **changes):
         (lambda run: change(run, versions={"gapath": 2}), "versions, gapath: got 2, expected str"),
         (lambda run: change(run, map_inputs={"m.png": {}}), "map_inputs, m.png: got {}, expected"),
         (lambda run: change(run, method_inputs={"a": 1}), "method_inputs, a: got 1, expected str"),
+        (lambda run: change(run, settings=[1]), "settings: got [1], expected a mapping"),
+        (lambda run: change(run, settings={"x": [1]}), "settings, x: got [1], expected str, int,"),
+        (lambda run: change(run, results={}), "results, trials: got None, expected int"),
+        (lambda run: change(run, results=1), "results: got 1, expected a mapping"),
         (lambda run: change(run, seed=True), "seed: got True, expected int"),
         (lambda run: change(run, seed=-1), "seed: got -1, expected an integer in [0, 2^64)"),
         (lambda run: change(run, trials=-1), "trials: got -1, expected an integer from 1 to 10^6"),

@@ -24,7 +24,7 @@ from gapath.running import config
 from gapath.running.experiment import execute, replay_events
 from gapath.running.naming import Method
 from gapath.store import keys, records, runfolder, whole
-from gapath.store.settings import flatten
+from gapath.store.settings import flatten, read_settings
 from gapath.tasks.plan import Task as PlanTask
 
 
@@ -74,6 +74,20 @@ def test_rows_and_log_agree(tmp_path):
         assert row["optimal_cost"] == optimum
         if row["feasible"]:
             assert row["optimality_ratio"] == pytest.approx(row["cost"] / optimum)
+
+
+def test_the_manifest_says_what_was_set_and_what_came_of_it(tmp_path):
+    run = make_run(tmp_path, "ga1", "kg18_test3", trials=20, recorders=())
+    execution = execute(run, "test")
+    known = records.Manifest.read(execution.folder)
+    assert known.settings == run.settings == read_settings(execution.folder / "config.yaml")
+    rows = pq.read_table(execution.folder / "trials.parquet").to_pandas()
+    found = int(rows["feasible"].sum())
+    assert (known.results.trials, known.results.succeeded) == (20, found) and found < 20
+    assert known.results.sums["evaluations"] == rows["evaluations"].sum()
+    assert known.results.sums["length"] == pytest.approx(rows["length"].sum(), rel=1e-14)
+    assert known.results.counts["length"] == found
+    assert "seed" not in known.results.sums and "map" not in known.results.sums
 
 
 def test_other_settings_maps_and_code_are_other_runs(monkeypatch):

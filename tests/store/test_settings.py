@@ -1,12 +1,14 @@
 """Settings as data: flat and nested again, as text and back."""
 
+import json
+
 import pytest
 import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
 from gapath.errors import InputError
-from gapath.store.settings import flatten, nested, of_text, read_settings, text_of
+from gapath.store.settings import flatten, nested, of_text, read_settings, tabular, text_of
 
 names = st.from_regex(r"[a-z_]{1,6}", fullmatch=True)
 values = (
@@ -30,6 +32,20 @@ def test_flat_settings_become_the_nested_ones_again(tree):
 def test_text_and_yaml_give_the_settings_back(tree):
     flat = flatten(tree)
     assert of_text(text_of(flat)) == flat
+
+
+def walked(tree, prefix=""):
+    """Columns of nested settings, the slow way."""
+    for name, item in tree.items():
+        if isinstance(item, dict) and item:
+            yield from walked(item, f"{prefix}{name}.")
+        else:
+            yield f"{prefix}{name}", json.dumps(item) if isinstance(item, dict | list) else item
+
+
+@given(st.dictionaries(names, trees, max_size=4))
+def test_columns_have_a_value_each_and_lists_as_json(tree):
+    assert list(tabular(flatten(tree)).items()) == list(walked(tree))
 
 
 def test_names_by_hand():

@@ -1,0 +1,23 @@
+"""What trials come to, against exact fractions."""
+
+import math
+from fractions import Fraction
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gapath.store.results import Results
+
+numbers = st.floats(-1e100, 1e100) | st.just(math.nan)
+
+
+@given(st.lists(st.tuples(st.booleans(), numbers, st.integers(0, 2**50)), max_size=30))
+def test_sums_are_those_of_fractions_rounded_once(trials):
+    success, cost, epochs = (np.array([row[i] for row in trials]) for i in range(3))
+    found = Results.of(success, {"cost": cost, "epochs": epochs})
+    known = [value for _, value, _ in trials if not math.isnan(value)]
+    assert (found.trials, found.succeeded) == (len(trials), sum(row[0] for row in trials))
+    assert found.sums["cost"] == float(sum(map(Fraction, known)))
+    assert found.sums["epochs"] == float(sum(row[2] for row in trials))
+    assert found.counts == ({"cost": len(known)} if len(known) < len(trials) else {})
