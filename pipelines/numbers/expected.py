@@ -1,6 +1,7 @@
 """What groups are expected to spend until a success, and by how much that differs."""
 
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -46,34 +47,44 @@ class Expected:
         low, high = np.exp(np.quantile(self.logs[:, at], (0.025, 0.975)))
         return value, float(low), float(high), ""
 
-    def difference(self, i: int, j: int) -> Difference:
-        """Compare two groups that have succeeded.
+    def differences(
+        self, pairs: Sequence[tuple[int, int]], shown: Sequence[bool]
+    ) -> Iterator[Difference]:
+        """Compare pairs of groups that have succeeded.
 
         Parameters
         ----------
-        i, j : int
+        pairs : sequence of (int, int)
             The groups.
+        shown : sequence of bool
+            Of which pairs to give the interval, too.
 
-        Returns
-        -------
+        Yields
+        ------
         Difference
             The ratio of both with its bootstrap interval, and a test: the logarithm of the ratio
             over its standard error among the resamples is normal (Efron and Tibshirani 1993).
         """
-        from scipy.stats import norm
+        from scipy.special import ndtr
 
-        effect = float(self.values[i] / self.values[j])
-        result = Difference("bootstrap", effect=effect)
-        fewest = int(min(self.successes[i], self.successes[j]))
-        if fewest < FEWEST:
-            return result._replace(why=f"{fewest} successes, too few for a test")
-        ratios = self.logs[:, i] - self.logs[:, j]
-        low, high = np.exp(np.quantile(ratios, (0.025, 0.975)))
-        result = result._replace(low=float(low), high=float(high))
-        error = float(ratios.std(ddof=1))
-        if error < 1e-12:
-            return result._replace(p=1.0 if math.isclose(effect, 1) else 0.0)
-        return result._replace(p=float(2 * norm.sf(abs(math.log(effect)) / error)))
+        spread = np.atleast_2d(np.cov(self.logs, rowvar=False))
+        for (i, j), sized in zip(pairs, shown, strict=True):
+            effect = float(self.values[i] / self.values[j])
+            result = Difference("bootstrap", effect=effect)
+            fewest = int(min(self.successes[i], self.successes[j]))
+            if fewest < FEWEST:
+                yield result._replace(why=f"{fewest} successes, too few for a test")
+                continue
+            if sized:
+                ratios = self.logs[:, i] - self.logs[:, j]
+                low, high = np.exp(np.quantile(ratios, (0.025, 0.975)))
+                result = result._replace(low=float(low), high=float(high))
+            square = float(spread[i, i] + spread[j, j] - 2 * spread[i, j])
+            if square < 1e-20:  # the same in each resample
+                yield result._replace(p=1.0 if math.isclose(effect, 1) else 0.0)
+                continue
+            z = abs(math.log(effect)) / math.sqrt(square)
+            yield result._replace(p=2 * float(ndtr(-z)))
 
 
 def expected(spent: Table, success: Table) -> Expected:

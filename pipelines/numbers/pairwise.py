@@ -192,7 +192,7 @@ def paired_amounts(
 def signed_rank(differences: NDArray[np.float64]) -> Vector:
     """Give the p-value of Wilcoxon's signed rank test of each column.
 
-    Differences of 0 take part in the ranking and are then left out (Pratt 1959).
+    Differences of 0 are left out (Wilcoxon 1945).
 
     Parameters
     ----------
@@ -206,12 +206,11 @@ def signed_rank(differences: NDArray[np.float64]) -> Vector:
     """
     from scipy.stats import wilcoxon
 
-    if len(differences) > 50:  # where SciPy, too, takes the normal distribution for all columns
+    if len(differences) > 50:  # where SciPy takes the normal distribution whatever the column
         columns = [differences]
     else:  # it chooses the distribution by all columns together, so each alone
         columns = np.split(differences, differences.shape[1], axis=1)
-    found = [wilcoxon(each, zero_method="pratt", axis=0).pvalue for each in columns]
-    return np.concatenate(found)
+    return np.concatenate([wilcoxon(each, axis=0).pvalue for each in columns])
 
 
 def unpaired_amounts(first: Vector, second: Vector, sized: bool = True) -> Difference:

@@ -175,12 +175,12 @@ def test_expected_amounts_agree_with_scipys_bootstrap():
     columns = (*spent.T, *success.T.astype(float))
     theirs = stats.bootstrap(columns, ratio, paired=True, method="percentile", n_resamples=4000,
                              rng=np.random.default_rng(0)).confidence_interval  # fmt: skip
-    mine = found.difference(0, 1)
+    (mine,) = found.differences([(0, 1)], [True])
     assert mine.effect == pytest.approx(ratio(*columns))
     assert (mine.low, mine.high) == pytest.approx(theirs, rel=0.03)
     assert found.values[1] == expected_running_time(spent[:, 1], success[:, 1])
     assert mine.p < 1e-6
-    assert expected(spent, success.astype(float)).difference(0, 1) == mine
+    assert list(expected(spent, success.astype(float)).differences([(0, 1)], [True])) == [mine]
 
 
 def test_expected_amounts_of_many_blocks_are_drawn_in_batches():
@@ -201,7 +201,8 @@ def test_expected_amounts_are_no_different_19_times_in_20_where_nothing_differs(
         random = np.random.default_rng(seed)
         success = (random.random((100, 2)) < 0.7).astype(float)
         spent = np.where(success, random.exponential(1, (100, 2)), 4)
-        apart += expected(spent, success).difference(0, 1).p < 0.05
+        (found,) = expected(spent, success).differences([(0, 1)], [True])
+        apart += found.p < 0.05
     assert apart <= 11
 
 
