@@ -156,7 +156,7 @@ def growing_path(
 
 _PLAYER = Template(
     """<div>
-<img alt="" src="$first" style="max-width: 100%"><br>
+<img alt="animation" src="$first" style="max-width: 100%"><br>
 <button type="button">play</button>
 <input type="range" min="0" max="$last" value="0" style="width: 24em; max-width: 70%"
  aria-label="moment">
