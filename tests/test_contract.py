@@ -1,13 +1,11 @@
 """What every planner, recorder and map reader must do; they are found, not listed."""
 
 import inspect
-from dataclasses import replace
 from importlib.resources import files
 
 import numpy as np
 import pytest
 import yaml
-from matplotlib.figure import Figure
 
 from gapath import components, discovery
 from gapath.discovery import kinds, readers, yaml_names, yaml_values
@@ -166,35 +164,6 @@ def test_whatever_is_asked_of_a_plan_it_tells(name):
         assert answers["trace"] is None or len(answers["trace"].best) == plan.epochs
         assert answers["survey"] is None or len(answers["survey"].points) >= 2
         assert plan.status.name.lower() in answers["_repr_html_"]
-        with pytest.raises(InputError, match=r"plan.problem: got None, expected a plan of gapath"):
-            plan.plot()
-        check_pictures(replace(plan, problem=problem), answers)
-
-
-def check_pictures(plan, answers):
-    """Check what is drawn of a plan that knows its problem."""
-    axes = plan.plot(Figure().subplots())
-    shown = [line.get_xydata().tolist() for line in axes.lines]
-    expected = [answers["path"].tolist(), answers["lines"].tolist()]
-    assert shown == [points for points in expected if points]
-    assert (plan.status.sentence in axes.get_title()) is not plan.feasible
-    history = answers["evolution"]
-    if history is None:
-        for draw in (plan.convergence, plan.animate):
-            with pytest.raises(InputError, match=r"plan\.evolution: got no history"):
-                draw()
-        return
-    best, mean = plan.convergence(Figure().subplots()).lines
-    epochs = list(range(1, plan.epochs + 1))
-    assert [*best.get_xdata()] == [*mean.get_xdata()] == epochs
-    assert np.array_equal(best.get_ydata(), history.best)
-    assert np.array_equal(mean.get_ydata(), history.mean)
-    animation, axes = plan.animate(), Figure().subplots()
-    show = animation.scene(axes)
-    for epoch in (animation.moments[0], animation.moments[-1]):
-        show(epoch)
-        assert axes.lines[0].get_xydata().tolist() == history.way_points[epoch].tolist()
-    assert epoch == plan.epochs - 1
 
 
 @pytest.mark.parametrize("name", PLANNERS)

@@ -3,18 +3,15 @@
 import re
 import runpy
 import shlex
-import warnings
 from importlib import import_module
 from pathlib import Path
 
-import numpy as np
 import pytest
 import yaml
 from hydra import compose, initialize_config_dir
 from hydra._internal.core_plugins.basic_sweeper import BasicSweeper
 from hydra._internal.utils import get_args_parser
 from hydra.core.override_parser.overrides_parser import OverridesParser
-from matplotlib import pyplot
 from omegaconf import OmegaConf
 
 import gapath
@@ -300,40 +297,6 @@ def test_a_command_that_is_wrong_is_noticed():
         check_log(["look", "run.mcap"])
     with pytest.raises(AssertionError, match="gapath-report does not know"):
         check_report(["outputs", "--colour"])
-
-
-def test_the_library_examples_of_the_readme_run(tmp_path, capfd):
-    examples = blocks((ROOT / "README.md").read_text("utf-8"), "python")
-    assert len(examples) == 2
-    for example in examples:
-        (tmp_path / "example.py").write_text(example)
-        names = runpy.run_path(str(tmp_path / "example.py"))
-    assert "a feasible path was found" in capfd.readouterr().out
-    assert len(example.splitlines()) == 4, "three lines, and a blank one"
-    best = pyplot.gca().lines[0].get_ydata()
-    assert best.tolist() == names["plan"].evolution.best.tolist()
-    assert (np.argmax(best < 1e5) + 1, len(best)) == (12, 100)  # as the picture's text says
-    pyplot.close()
-
-
-def test_the_page_of_the_library_does_what_it_says(tmp_path, monkeypatch, capfd):
-    monkeypatch.chdir(tmp_path)
-    page = ROOT / "docs" / "library.md"
-    for command in commands(page)[:2]:
-        monkeypatch.setattr("sys.argv", shlex.split(command))
-        cli.main()
-    capfd.readouterr()
-    text = page.read_text("utf-8")
-    Path("example.py").write_text("\n".join(blocks(text, "python")))
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        runpy.run_path("example.py")
-    printed = capfd.readouterr().out
-    assert printed.startswith("FOUND") and printed.endswith("True\n")
-    assert {"path.png", "epochs.gif"} <= {path.name for path in tmp_path.iterdir()}
-    for name in set(re.findall(r"gapath\.(\w+)\(", text)) | {"InputError"}:
-        assert name in gapath.__all__
-    pyplot.close("all")
 
 
 def test_the_examples_of_the_log_page_read_a_log(tmp_path, monkeypatch, capfd):

@@ -1,19 +1,29 @@
-"""The notebooks of examples/ run from top to bottom here, and show what they say."""
+"""The notebooks of examples/ and the pages of the library run, and show what they say."""
 
 import json
 import os
+import re
+import runpy
+import shlex
 import sys
 import tempfile
+import warnings
 from pathlib import Path
 
 import nbformat
+import numpy as np
 import pytest
 from jupyter_client.kernelspec import KernelSpecManager
 from jupyter_client.manager import AsyncKernelManager
+from matplotlib import pyplot
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError
+from test_docs import ROOT, blocks, commands
 
-NOTEBOOKS = sorted((Path(__file__).parents[1] / "examples").glob("*.ipynb"))
+import gapath
+from gapath.commands import run as cli
+
+NOTEBOOKS = sorted((ROOT / "examples").glob("*.ipynb"))
 TIMEOUT = 120
 """Seconds a cell may take on a busy machine."""
 
@@ -101,3 +111,37 @@ def test_a_notebook_that_fails_is_noticed(execute):
     cells = [nbformat.v4.new_code_cell("import gapath\ngapath.load_map('nowhere')")]
     with pytest.raises(CellExecutionError, match="nowhere"):
         execute(nbformat.v4.new_notebook(cells=cells))
+
+
+def test_the_library_examples_of_the_readme_run(tmp_path, capfd):
+    examples = blocks((ROOT / "README.md").read_text("utf-8"), "python")
+    assert len(examples) == 2
+    for example in examples:
+        (tmp_path / "example.py").write_text(example)
+        names = runpy.run_path(str(tmp_path / "example.py"))
+    assert "a feasible path was found" in capfd.readouterr().out
+    assert len(example.splitlines()) == 4, "three lines, and a blank one"
+    best = pyplot.gca().lines[0].get_ydata()
+    assert best.tolist() == names["plan"].evolution.best.tolist()
+    assert (np.argmax(best < 1e5) + 1, len(best)) == (12, 100)  # as the picture's text says
+    pyplot.close()
+
+
+def test_the_page_of_the_library_does_what_it_says(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    page = ROOT / "docs" / "library.md"
+    for command in commands(page)[:2]:
+        monkeypatch.setattr("sys.argv", shlex.split(command))
+        cli.main()
+    capfd.readouterr()
+    text = page.read_text("utf-8")
+    Path("example.py").write_text("\n".join(blocks(text, "python")))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        runpy.run_path("example.py")
+    printed = capfd.readouterr().out
+    assert printed.startswith("FOUND") and printed.endswith("True\n")
+    assert {"path.png", "epochs.gif"} <= {path.name for path in tmp_path.iterdir()}
+    for name in set(re.findall(r"gapath\.(\w+)\(", text)) | {"InputError"}:
+        assert name in gapath.__all__
+    pyplot.close("all")

@@ -17,9 +17,8 @@ def draw_convergence(axes: Axes, best: NDArray[np.float64], mean: NDArray[np.flo
     """
     epochs = np.arange(1, len(best) + 1)
     point = "o" if len(epochs) == 1 else ""
-    dashed = {"linestyle": (0, (5, 1.5)), "linewidth": 1}
     axes.plot(epochs, best, color="#0072B2", marker=point, zorder=3, label="best")
-    axes.plot(epochs, mean, color="#D55E00", marker=point, **dashed, label="mean")
+    axes.plot(epochs, mean, "--", color="#D55E00", marker=point, linewidth=1, label="mean")
     if min(best.min(), mean.min()) > 0:
         axes.set_yscale("log")
     axes.set(xlabel="epoch", ylabel="fitness (less is better)")
