@@ -49,12 +49,19 @@ def run_frame(runs: Sequence[RunRecord]) -> pd.DataFrame:
         - success, the share of trials that succeeded, and for every numeric column of the trials
           the mean over those where it is defined; null of runs that cannot be used.
     """
-    runs = _named([checked(run) for run in runs])
+    return described(runs)[0]
+
+
+def described(runs: Sequence[RunRecord]) -> tuple[pd.DataFrame, list[Results | None]]:
+    """Make a table of runs as `run_frame` does, and give what each of them came to."""
+    pairs = [_with_results(run) for run in runs]
+    came = [results for _, results in pairs]
+    settings = [_settings(run) for run, _ in pairs]
+    runs = _named([run for run, _ in pairs])
     keys = pd.Index([run.folder.name for run in runs], dtype="str", name="key")
     newer = {id(run): other.folder.name for run, other in superseded(runs)}
     own = [_own(run) | {"superseded": newer.get(id(run))} for run in runs]
-    settings = [_settings(run) for run in runs]
-    means = [_means(results_of(run)) if not run.fault else {} for run in runs]
+    means = [_means(results) if results else {} for results in came]
     columns: dict[str, Any] = {name: _column(own, name, kind) for name, kind in _OWN.items()}
     columns |= {name: _column(settings, name) for name in _names(settings) if name not in _SAID}
     columns |= {
@@ -62,7 +69,7 @@ def run_frame(runs: Sequence[RunRecord]) -> pd.DataFrame:
         for name in ("success", *_names(means))
         if name not in columns
     }
-    return pd.DataFrame(columns, index=keys)
+    return pd.DataFrame(columns, index=keys), came
 
 
 def chosen(frame: pd.DataFrame, where: str) -> pd.DataFrame:
@@ -86,6 +93,11 @@ def chosen(frame: pd.DataFrame, where: str) -> pd.DataFrame:
     InputError
         If it is no such expression, or names an unknown column: gives the nearest.
     """
+    return frame.iloc[matching(frame, where)]
+
+
+def matching(frame: pd.DataFrame, where: str) -> list[int]:
+    """Tell the places of the rows that `chosen` gives, ascending."""
     import duckdb
     import pyarrow as pa
 
@@ -98,7 +110,7 @@ def chosen(frame: pd.DataFrame, where: str) -> pd.DataFrame:
             found = rows.filter(duckdb.SQLExpression(text)).select(_PLACE).fetchall()
         except duckdb.Error as error:
             raise refusal(error, where, list(table.columns), "where") from error
-    return frame.iloc[sorted(place for (place,) in found)]
+    return sorted(place for (place,) in found)
 
 
 _PLACE = "place_of_the_row"
@@ -106,12 +118,16 @@ _PLACE = "place_of_the_row"
 
 def checked(run: RunRecord) -> RunRecord:
     """Read a run's settings and results; one of which they cannot be read has that as its fault."""
+    return _with_results(run)[0]
+
+
+def _with_results(run: RunRecord) -> tuple[RunRecord, Results | None]:
+    if run.fault:
+        return run, None
     try:
-        if not run.fault and run.settings is not None:
-            results_of(run)
+        return run, results_of(run) if run.settings is not None else None
     except InputError as error:
-        return dataclasses.replace(run, fault=str(error))
-    return run
+        return dataclasses.replace(run, fault=str(error)), None
 
 
 def _named(runs: Sequence[RunRecord]) -> list[RunRecord]:
@@ -162,3 +178,9 @@ def _column(rows: Sequence[Mapping[str, Any]], name: str, kind: str = "") -> Any
         text = [value if isinstance(value, str | None) else json.dumps(value) for value in values]
         return pd.array(text, dtype="str")
     return pd.array(values, dtype="object")
+
+
+def setting_columns(frame: pd.DataFrame) -> list[str]:
+    """Name the columns of a table of runs that are settings."""
+    names = list(frame)
+    return names[names.index("superseded") + 1 : names.index("success")]

@@ -5,7 +5,7 @@ it is written as it is, and quoted here.
 """
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from typing import Any
 
 from gapath.errors import InputError, did_you_mean
@@ -109,13 +109,13 @@ def refusal(error: Exception, text: str, columns: Collection[str], where: str) -
     return InputError(where, text, f"SQL that can be answered ({message})")
 
 
-def connect(**settings: Any) -> Any:
-    """Start DuckDB in memory, where no question can reach files or the network.
+def connect(files: Sequence[str] = ()) -> Any:
+    """Start DuckDB in memory, where no question can reach other files or the network.
 
     Parameters
     ----------
-    **settings
-        More of DuckDB's own settings.
+    files : sequence of str
+        The files that may be read.
 
     Returns
     -------
@@ -124,4 +124,13 @@ def connect(**settings: Any) -> Any:
     """
     import duckdb
 
-    return duckdb.connect(":memory:", config={"enable_external_access": False, **settings})
+    connection = duckdb.connect(":memory:")
+    connection.execute(f"set allowed_paths = [{', '.join(map(literal, files))}]")
+    connection.execute("set enable_external_access = false")
+    connection.execute("set lock_configuration = true")
+    return connection
+
+
+def literal(text: str) -> str:
+    """Write text as SQL does."""
+    return "'" + text.replace("'", "''") + "'"

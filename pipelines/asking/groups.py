@@ -1,0 +1,82 @@
+"""What groups of runs come to: their trials pooled, from the sums that each run keeps."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+
+from gapath.pipelines.numbers.statistics import wilson
+from gapath.store.results import Results
+
+EVALUATIONS = "evaluations"
+SECONDS = ("plan_time_s", "compute_time_s")
+SPENT = (EVALUATIONS, *SECONDS)
+"""What a trial spends: columns of the rows, of the seconds each task has its own."""
+
+FIGURES = ("runs", "trials", "success", "success_low", "success_high", "expected_evaluations",
+           "expected_seconds")  # fmt: skip
+"""Columns of every table of groups."""
+
+
+def grouped(frame: pd.DataFrame, came: Sequence[Results], by: Sequence[str]) -> pd.DataFrame:
+    """Pool the trials of runs that have something in common.
+
+    Parameters
+    ----------
+    frame : DataFrame
+        Runs that count, a row each.
+    came : sequence of Results
+        What each of them came to.
+    by : sequence of str
+        Columns of the frame.
+
+    Returns
+    -------
+    DataFrame
+        A row for each combination of values, in their order, with them; runs, trials; success,
+        the share of trials that succeeded, and the ends of its 95 % interval (Wilson);
+        expected_evaluations and expected_seconds until one succeeds, those of failures counted
+        (infinite where none did); and of every result the mean over the trials where it is
+        defined. A method that evaluates nothing draws no random numbers, so that it has neither
+        interval nor expected evaluations.
+    """
+    number = frame.groupby(list(by), dropna=False, sort=True).ngroup().to_numpy()
+    order = np.argsort(number, kind="stable")
+    groups = np.split(order, np.flatnonzero(np.diff(number[order])) + 1) if len(order) else []
+    names = list(dict.fromkeys(name for each in came for name in each.sums))
+    trials = np.array([each.trials for each in came])
+    succeeded = np.array([each.succeeded for each in came])
+    sums = {name: np.array([each.sums.get(name, 0.0) for each in came]) for name in names}
+    counts = {name: np.array([_count(each, name) for each in came]) for name in names}
+    rows = []
+    for group in groups:
+        total = {name: math.fsum(sums[name][group]) for name in names}
+        count = {name: int(counts[name][group].sum()) for name in names}
+        figures = _figures(int(trials[group].sum()), int(succeeded[group].sum()), total, count)
+        means = {name: total[name] / count[name] for name in names if count[name]}
+        rows.append(means | {"runs": len(group)} | figures)
+    keys = frame[list(by)].iloc[[group[0] for group in groups]].reset_index(drop=True)
+    columns = dict.fromkeys([*FIGURES, *names])
+    return keys.join(pd.DataFrame(rows, columns=[name for name in columns if name not in by]))
+
+
+def _count(came: Results, name: str) -> int:
+    """Tell in how many trials of a run a column is defined."""
+    return came.counts.get(name, came.trials) if name in came.sums else 0
+
+
+def _figures(
+    trials: int, succeeded: int, total: dict[str, float], count: dict[str, int]
+) -> dict[str, float]:
+    drawn = total.get(EVALUATIONS) != 0
+    low, high = wilson(succeeded / trials, trials) if drawn else (math.nan, math.nan)
+    figures = {"trials": trials, "success": succeeded / trials}
+    figures |= {"success_low": low, "success_high": high}
+    spent = {"expected_evaluations": [EVALUATIONS] if drawn else [], "expected_seconds": SECONDS}
+    for name, columns in spent.items():
+        known = [column for column in columns if count.get(column)]
+        if known:
+            effort = math.fsum(total[column] for column in known)
+            figures[name] = effort / succeeded if succeeded else math.inf
+    return figures
