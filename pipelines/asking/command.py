@@ -62,7 +62,10 @@ def main(arguments: Sequence[str]) -> None:
     places = _places(given, frame)
     if given.sql is not None:
         places = _counting(frame, runs, places)
-        _write(given, asked(given.sql, frame.iloc[places], [runs[place] for place in places]))
+        answer, bad = asked(given.sql, frame.iloc[places], [runs[place] for place in places])
+        for name in bad:
+            print(f"left out {name}: its trials cannot be read", file=sys.stderr)
+        _write(given, answer)
     elif given.group is not None:
         by = _columns("--group", given.group, ["key", *frame])
         places = _counting(frame, runs, places)

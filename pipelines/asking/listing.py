@@ -86,13 +86,15 @@ def listed(frame: pd.DataFrame, keys: Iterable[str]) -> pd.DataFrame:
     return rows
 
 
-def importance(rows: pd.DataFrame) -> dict[str, float]:
-    """Tell how important the columns of a list are that it may do without."""
-    plain = ["experiment", "task", "map", "preset", "method", "seed", "state"]
-    same = [name for name in plain if name in rows and not _varies(rows, name)]
-    order = [*reversed(METRICS), "date", "start", "target", "trials", *reversed(same)]
-    settings = [name for name in reversed(list(rows)) if "." in name]
-    return {name: i for i, name in enumerate([*order, *settings])}
+def importance(rows: pd.DataFrame) -> dict[str, int]:
+    """Tell how important the columns of a list are: all that it may do without."""
+    names = ("experiment", "task", "map", "preset", "method", "seed", "state")
+    same = [name for name in names if name in rows and not _varies(rows, name)]
+    settings = [name for name in rows if "." in name]
+    last = ["date", "start", "target", "trials", "seed", "superseded", "map_instance"]
+    best = ["task", "experiment", "state", "map", "method", "preset", "success"]
+    order = [*reversed(METRICS), *reversed(same), *last, *reversed(settings), *best]
+    return {name: order.index(name) for name in rows if name != "key"}
 
 
 def _varies(frame: pd.DataFrame, name: str) -> bool:

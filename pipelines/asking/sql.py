@@ -12,10 +12,11 @@ from gapath.store.records import TRIALS, RunRecord
 from gapath.store.settings import tabular
 
 WHERE = "--sql"
+_NOTHING = "select null::varchar as key where false"
 _RIGHT = "one SELECT over the tables runs and trials"
 
 
-def asked(text: str, frame: pd.DataFrame, runs: Sequence[RunRecord]) -> Answer:
+def asked(text: str, frame: pd.DataFrame, runs: Sequence[RunRecord]) -> tuple[Answer, list[str]]:
     """Answer a question in SQL.
 
     Parameters
@@ -31,8 +32,10 @@ def asked(text: str, frame: pd.DataFrame, runs: Sequence[RunRecord]) -> Answer:
 
     Returns
     -------
-    Answer
+    answer : Answer
         What comes out.
+    unreadable : list of str
+        Names of the runs that were left out, since their trials cannot be read.
 
     Raises
     ------
@@ -40,14 +43,37 @@ def asked(text: str, frame: pd.DataFrame, runs: Sequence[RunRecord]) -> Answer:
         If it is anything else, or cannot be answered.
     """
     import duckdb
+
+    unreadable: list[str] = []
+    runs, together = list(runs), False
+    while True:
+        files = [str((run.folder / TRIALS).resolve()) for run in runs]
+        alike = [files] if together else _alike(runs, files)
+        try:
+            return _answered(text, frame, alike, together), unreadable
+        except duckdb.Error as error:
+            message = str(error)
+            (bad, *_) = (i for i, file in enumerate(files) if file in message)
+            if "schema mismatch" in message and not together:
+                together = True  # some files have other columns than their manifests tell
+                continue
+            unreadable.append(runs.pop(bad).name)
+            frame = frame.drop(index=frame.index[bad])
+
+
+def _answered(
+    text: str, frame: pd.DataFrame, alike: Sequence[Sequence[str]], together: bool
+) -> Answer:
+    """Answer a question; raises DuckDB's error where a file cannot be read."""
+    import duckdb
     import pyarrow as pa
 
-    alike = _alike(runs)
-    columns = list(frame.reset_index())
-    with connect([path for files in alike for path in files]) as connection:
-        connection.register("runs", pa.Table.from_pandas(frame.reset_index(), preserve_index=False))
+    table = frame.reset_index()
+    columns, files = list(table), [path for each in alike for path in each]
+    with connect(files) as connection:
+        connection.register("runs", pa.Table.from_pandas(table, preserve_index=False))
         try:
-            parts = [_part(connection, files) for files in alike]
+            parts = [_part(connection, each, together) for each in alike if each] or [_NOTHING]
             connection.execute(f"create view trials as {' union all by name '.join(parts)}")
             described = connection.execute("describe trials").fetchall()
             columns = list(dict.fromkeys([*columns, *(row[0] for row in described)]))
@@ -58,29 +84,30 @@ def asked(text: str, frame: pd.DataFrame, runs: Sequence[RunRecord]) -> Answer:
             names = [column[0] for column in found.description]
             rows = found.fetchall()
         except duckdb.Error as error:
+            if any(file in str(error) for file in files):
+                raise
             raise refusal(error, text, columns, WHERE) from error
-    return Answer(
-        names, [list(column) for column in zip(*rows, strict=True)] or [[] for _ in names]
-    )
+    return Answer(names, [[row[i] for row in rows] for i in range(len(names))])
 
 
-def _alike(runs: Iterable[RunRecord]) -> list[list[str]]:
+def _alike(runs: Iterable[RunRecord], files: Iterable[str]) -> list[list[str]]:
     """Give the files with trials, those together whose columns are the same.
 
     Runs of one task, one code and settings of the same names and types write the same columns,
     so that not every file has to be looked at.
     """
     found: dict[Any, list[str]] = {}
-    for run in runs:
+    for run, file in zip(runs, files, strict=True):
         kinds = tuple((name, type(value)) for name, value in tabular(run.settings).items())
         columns = (run.known.task, tuple(run.known.versions.items()), kinds)
-        found.setdefault(columns, []).append(str((run.folder / TRIALS).resolve()))
+        found.setdefault(columns, []).append(file)
     return list(found.values())
 
 
-def _part(connection: Any, files: Sequence[str]) -> str:
-    """Write the SELECT of the trials in files with the same columns: NaN is null there."""
-    source = f"read_parquet([{', '.join(map(literal, files))}], filename = true)"
+def _part(connection: Any, files: Sequence[str], together: bool) -> str:
+    """Write the SELECT of the trials in files, with the same columns or not: NaN is null there."""
+    listed = ", ".join(map(literal, files))
+    source = f"read_parquet([{listed}], filename = true, union_by_name = {together})"
     kinds = connection.execute(f"describe select * exclude (filename) from {source}").fetchall()
     names = [_identifier(row[0]) for row in kinds if row[1] == "DOUBLE"]
     known = ", ".join(f"nullif({name}, 'nan'::double) as {name}" for name in names)

@@ -148,10 +148,10 @@ def _settings(run: RunRecord) -> Mapping[str, Any]:
         return {}
 
 
-def _means(came: Results) -> dict[str, float]:
+def _means(came: Results) -> dict[str, float | None]:
     counts, sums = came.counts, came.sums
-    means = {name: total / came.trials for name, total in sums.items() if name not in counts}
-    partly = {name: sums[name] / count for name, count in counts.items() if count}
+    means = {name: total / came.trials for name, total in sums.items()}
+    partly = {name: sums[name] / count if count else None for name, count in counts.items()}
     return {"success": came.succeeded / came.trials, **means, **partly}
 
 

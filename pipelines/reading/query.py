@@ -127,6 +127,7 @@ def connect(files: Sequence[str] = ()) -> Any:
     connection = duckdb.connect(":memory:")
     connection.execute(f"set allowed_paths = [{', '.join(map(literal, files))}]")
     connection.execute("set enable_external_access = false")
+    connection.execute("set python_enable_replacements = false")  # no variables of this program
     connection.execute("set lock_configuration = true")
     return connection
 

@@ -20,8 +20,9 @@ from gapath.store.records import (
     find_runs,
 )
 from gapath.store.runfolder import LOCK, RunFolder
-from gapath.store.settings import nested
+from gapath.store.settings import nested, read_settings
 from gapath.store.status import STATUS, RunState, Status
+from gapath.task import find_task, results
 
 from .synthetic import (
     MAPS,
@@ -70,6 +71,14 @@ def sign(folder: Path, manifest: Manifest | None = None, **changes: Any) -> None
         if path.name not in own
     }
     replace(manifest or Manifest.read(folder), files=entries, **changes).write(run)
+
+
+def summed(folder: Path) -> None:
+    """Have the manifest say what was set and what came of it: `make_run` writes older ones."""
+    rows = pd.read_parquet(folder / TRIALS)
+    known = Manifest.read(folder)
+    came = results(find_task(known.task), rows)
+    sign(folder, settings=read_settings(folder / CONFIG), results=came)
 
 
 def write_status(folder: Path, state: str, date: str = DATE, text: str = "") -> None:

@@ -5,7 +5,6 @@ import shutil
 import pytest
 
 from gapath.errors import InputError
-from gapath.pipelines.reading.listing import listing
 from gapath.pipelines.reading.logs import events_of, read_logs, run_start
 from gapath.store.records import find_runs
 from gapath.store.status import RunState
@@ -31,9 +30,6 @@ def only(folder):
 def test_a_whole_run(run):
     found = only(run)
     assert (found.state, found.fault, found.known.method) == ("done", "", "ga1")
-    (row,) = listing([found])
-    assert row["key"] == run.name
-    assert (row["map"], row["trials"], row["date"]) == ("kg18_test1", "5", "2026-01-01 12:00")
 
 
 @pytest.mark.parametrize("state", ["failed", "interrupted"])
@@ -72,13 +68,6 @@ def test_no_status_is_unknown(run):
     (run / "status.json").unlink()
     assert only(run).state == "unknown"
     assert "status.json" in only(run).fault
-
-
-def test_a_run_without_manifest_still_shows_in_the_list(run):
-    write_status(run, "running")
-    (run / "manifest.json").unlink()
-    (row,) = listing([only(run)])
-    assert (row["map"], row["method"], row["state"]) == ("?", "?", "interrupted")
 
 
 def change(run, **changes):
