@@ -125,6 +125,8 @@ class Problem:
 def _pair(place: Any) -> Field | None:
     try:
         x, y = place
+        if type(x) is type(y) is int:  # nearly always
+            return x, y
         pair = int(x), int(y)
         return pair if pair == (float(x), float(y)) else None
     except (TypeError, ValueError, OverflowError):
