@@ -38,8 +38,8 @@ def told_apart(runs: Sequence[RunRecord]) -> list[RunRecord]:
     methods = _differences(
         runs,
         lambda run: (run.known.task, run.known.method),
-        lambda run: (str(_method(run)), *contents(run.known.method_inputs)),
-        (_method, lambda run: _hashes(run.known.method_inputs)),
+        lambda run: (str(tried(run)), *contents(run.known.method_inputs)),
+        (tried, lambda run: _hashes(run.known.method_inputs)),
     )
     maps = _differences(
         runs,
@@ -50,7 +50,8 @@ def told_apart(runs: Sequence[RunRecord]) -> list[RunRecord]:
     return [_renamed(*each) for each in zip(runs, methods, maps, strict=True)]
 
 
-def _method(run: RunRecord) -> dict[str, Value]:
+def tried(run: RunRecord) -> dict[str, Value]:
+    """Give the settings of what a run tries, by their names, without paths and the map's."""
     settings = tabular(without_paths(run.settings, run.known.method_inputs)).items()
     return {key: value for key, value in settings if key.partition(".")[0] not in _NO_METHOD}
 

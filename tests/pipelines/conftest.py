@@ -102,7 +102,8 @@ def record_of(
     place = ("mine", key)
     manifest = manifest_of(Method(preset, changes), task, place, **known)
     run = RunRecord(Path(*place), Status(RunState.DONE, DATE, DATE), manifest, "")
-    vars(run)["settings"] = plan_settings(preset, changes)
+    make = drive_settings if task == "drive" else plan_settings
+    vars(run)["settings"] = make(preset, changes)
     return run
 
 
