@@ -111,8 +111,10 @@ def test_its_task_runs_is_logged_recorded_and_reported(site, tmp_path):
     )
     assert (folder / "trial-0.rrd").stat().st_size > 0
     succeed(site, tmp_path, "gapath-report", "outputs")
-    overview = pd.read_csv(tmp_path / "outputs" / "report" / "round_trip_overview.csv")
-    assert overview[["map", "planner", "n", "success"]].to_numpy().tolist() == [
+    overview = pd.read_csv(
+        tmp_path / "outputs" / "report" / "sweep_round_trip_round_trip_others.csv"
+    )
+    assert overview[["place", "method", "n", "success"]].to_numpy().tolist() == [
         ["kg18_test3", "astar", 2, 1.0]
     ]
     code, _, errors = run(site, tmp_path, "gapath", "task=round_trip", "navigator=kg18")
@@ -170,8 +172,8 @@ def test_a_third_task_with_the_events_of_drives_works_everywhere(tmp_path):
     succeed(site, tmp_path, "gapath-log", "rerun", log, "--trials", "1")
     assert (folder / "trial-1.rrd").stat().st_size > 0
     succeed(site, tmp_path, "gapath-report", "outputs")
-    overview = pd.read_csv(tmp_path / "outputs" / "report" / "walk_overview.csv")
-    assert overview[["map", "n", "success"]].to_numpy().tolist() == [["kg18_test3", 2, 1.0]]
+    overview = pd.read_csv(tmp_path / "outputs" / "report" / "sweep_walk_walk_others.csv")
+    assert overview[["place", "n", "success"]].to_numpy().tolist() == [["kg18_test3", 2, 1.0]]
 
 
 @pytest.mark.parametrize(

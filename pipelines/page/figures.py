@@ -66,7 +66,11 @@ def looks(planners: Iterable[str]) -> dict[str, Look]:
     dict of str to Look
         In the order in which to draw them.
     """
-    names = sorted(set(planners), key=rank)
+    return looks_of(sorted(set(planners), key=rank))
+
+
+def looks_of(names: Iterable[str]) -> dict[str, Look]:
+    """Give names their looks, in the order given."""
     return {name: _LOOKS[i % len(_LOOKS)] for i, name in enumerate(names)}
 
 

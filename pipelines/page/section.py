@@ -4,10 +4,11 @@ A section is one file of pipelines, ``table*.py`` or ``figure_*.py``, that offer
 
 - ``TASK``: the name of a task, of whose trials alone it sees any, or `ALL`: it is asked once for
   each task, whose name the runs tell;
-- ``EXPERIMENT``: the experiment whose trials it wants, None for those that no other wants, or `ALL`
-  for every one;
+- ``EXPERIMENT``: the experiment whose trials it wants, or None: it is asked once for each that no
+  other wants, or `ALL` for every one;
 - ``ORDER``: its place on the page, a number;
-- ``section(trials, runs)``: a frame of trials and the runs they come from -> `Section`.
+- ``section(trials, runs)``: a frame of trials and the runs they come from -> `Section`, or several
+  in a list, or None where there is nothing to show.
 """
 
 import importlib
@@ -161,6 +162,8 @@ class Section:
         How the numbers were made and what they do not say.
     skipped : tuple of (str, str)
         Runs that it could not use, and why.
+    runs : tuple of str
+        Keys of the runs that it is about; empty where it is about all it was asked with.
     """
 
     title: str
@@ -169,6 +172,7 @@ class Section:
     figures: tuple[Figure, ...] = ()
     remarks: tuple[str, ...] = ()
     skipped: tuple[tuple[str, str], ...] = ()
+    runs: tuple[str, ...] = ()
 
 
 def find_sections() -> list[ModuleType]:

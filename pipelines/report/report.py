@@ -76,11 +76,10 @@ def _runs_page(
     modules = find_sections()
     for module in tqdm(modules, "sections", disable=None):
         for task in [task for task in trials if module.TASK in (ALL, task)]:
-            mine = _wanted(module, modules, task, trials[task])
-            part = _part(module, task, mine, used)
-            if part is not None:
-                parts.append(part)
-                skipped += [Skipped(*entry) for entry in part.section.skipped]
+            for place, mine in _wanted(module, modules, task, trials[task]):
+                more = _parts(module, place, mine, used)
+                parts += more
+                skipped += [Skipped(*entry) for part in more for entry in part.section.skipped]
     skipped = list(dict.fromkeys(skipped))  # two figures may read the same log
     page = render(
         "report.html.j2",
@@ -100,14 +99,16 @@ def _runs_page(
 
 def _wanted(
     module: ModuleType, modules: Sequence[ModuleType], task: str, trials: pd.DataFrame
-) -> pd.DataFrame:
-    """Give the trials of a task that a section wants."""
+) -> list[tuple[str, pd.DataFrame]]:
+    """Give the trials of a task that a section wants, each time it is asked, and its anchor."""
+    anchor = _anchor(module, task)
     if module.EXPERIMENT == ALL:
-        return trials
+        return [(anchor, trials)]
     if module.EXPERIMENT is None:
         wanted = {other.EXPERIMENT for other in modules if other.TASK in (ALL, task)}
-        return trials[~trials["experiment"].isin(wanted - {None, ALL})]
-    return trials[trials["experiment"] == module.EXPERIMENT]
+        others = trials[~trials["experiment"].isin(wanted - {None, ALL})]
+        return [(f"{anchor}-{name}", its) for name, its in others.groupby("experiment")]
+    return [(anchor, trials[trials["experiment"] == module.EXPERIMENT])]
 
 
 def _runs_of(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> list[RunRecord]:
@@ -116,16 +117,18 @@ def _runs_of(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> list[RunRecord]
     return [run for run in runs if run.folder.name in used]
 
 
-def _part(
-    module: ModuleType, task: str, trials: pd.DataFrame, runs: Sequence[RunRecord]
-) -> Part | None:
-    """Ask a module for its section; None where it has nothing to show."""
+def _parts(
+    module: ModuleType, anchor: str, trials: pd.DataFrame, runs: Sequence[RunRecord]
+) -> list[Part]:
+    """Ask a module for its sections; none where it has nothing to show."""
     runs = _runs_of(trials, runs)
-    section = module.section(trials, runs) if len(trials) else None
-    if section is None:
-        return None
-    commands = as_sweeps(run.known.command for run in runs)
-    return Part(_anchor(module, task), section, commands)
+    made = (module.section(trials, runs) if len(trials) else None) or []
+    parts = []
+    for i, section in enumerate(made if isinstance(made, list) else [made]):
+        mine = [run for run in runs if not section.runs or run.folder.name in section.runs]
+        commands = as_sweeps(run.known.command for run in mine)
+        parts.append(Part(f"{anchor}-{i + 1}" if i else anchor, section, commands))
+    return parts
 
 
 def _anchor(module: ModuleType, task: str) -> str:

@@ -1,152 +1,214 @@
-"""Trials of experiments that no other section is about, at a glance."""
+"""Experiments that no other section is about: what varied, and what came of it."""
 
-from collections.abc import Callable, Sequence
-from typing import NamedTuple
+import math
+from collections.abc import Sequence
 
 import pandas as pd
 
-from gapath.driving.row import DriveRow
-from gapath.pipelines.numbers.drive_summary import rate, summarise_drives
-from gapath.pipelines.numbers.statistics import wilson
-from gapath.pipelines.numbers.summary import summarise, summarise_by
-from gapath.pipelines.numbers.text import middle, number, percent, percent_range
-from gapath.pipelines.page.section import ALL, Section, Table
-from gapath.pipelines.papers.names import label
+from gapath.pipelines.numbers.text import number, percent
+from gapath.pipelines.page.section import ALL, Figure, Section, Table
+from gapath.pipelines.papers.names import rank
+from gapath.pipelines.sweeps.best import best_table, find_best, sentences
+from gapath.pipelines.sweeps.cells import summarise_cells
+from gapath.pipelines.sweeps.importance import importance
+from gapath.pipelines.sweeps.measures import TRIALS, measures_of
+from gapath.pipelines.sweeps.pictures.curves import curves
+from gapath.pipelines.sweeps.pictures.heat import heat_maps
+from gapath.pipelines.sweeps.pictures.many import (
+    effects,
+    importances,
+    parallel,
+    results,
+    told_by,
+)
+from gapath.pipelines.sweeps.pictures.shares import shares
+from gapath.pipelines.sweeps.problems import problems_table
+from gapath.pipelines.sweeps.varied import Factor, cases_of, find_sweeps
+from gapath.pipelines.sweeps.view import View, amount, rate, sentence, text, view_of
 from gapath.store.records import RunRecord
-from gapath.task import Row, Task, find_task
-from gapath.tasks.plan import PlanRow
+from gapath.task import find_task
 
 TASK = ALL
 EXPERIMENT = None
 ORDER = 90
 
-
-class Overview(NamedTuple):
-    """What a glance at the trials of a task shows."""
-
-    name: str
-    """Of its files."""
-    title: str
-    caption: str
-    summarise: Callable[[pd.DataFrame], dict[str, float]]
-    """Sums up the trials of a setting."""
-    cells: Callable[[pd.Series], dict[str, str]]
-    """Writes such a sum for people."""
+_ROWS = 400
+"""A page shows so many rows of a table."""
 
 
-def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
-    """Make the section that lists trials by experiment, map, its start and target, and method.
+def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> list[Section]:
+    """Make the sections of an experiment of a user's own.
 
     Parameters
     ----------
     trials : DataFrame
-        The trials of a task that no other section wants.
+        The trials of the experiment, of one task.
     runs : sequence of RunRecord
         The runs they come from.
 
     Returns
     -------
-    Section
-        A row for each experiment, map and method.
+    list of Section
+        One for each sweep in it, found from what varies, and one for what is in none.
     """
     task = find_task(runs[0].known.task)
-    method = task.groups[0]
-    rich = (_OVERVIEWS[kind] for kind in task.row.__mro__ if kind in _OVERVIEWS)
-    overview = next(rich, None) or plain_overview(task)
-    by = ["experiment", "map", "map_source", "start", "target", method]
-    rows = summarise_by(trials, by, overview.summarise)
-    instances = trials.groupby(by)["map_instance"].nunique()
-    rows.insert(len(by), "instances", [instances[tuple(row)] for row in rows[by].to_numpy()])
-    shown = [
-        {
-            "Experiment": row["experiment"],
-            "Map": label(row["map"], row["map_source"]),
-            method.capitalize(): label(row[method]),
-            "From, to": f"{row['start']} {row['target']}",
-            "Instances": number(row["instances"]),
-            **overview.cells(row),
-        }
-        for _, row in rows.iterrows()
-    ]
-    table = Table(overview.name, overview.caption, rows, pd.DataFrame(shown), heads=3)
-    return Section(title=overview.title, tables=(table.with_runs(trials, by),))
+    experiment, choice, measures = trials["experiment"].iloc[0], task.groups[0], measures_of(task)
+    cases = cases_of(runs)
+    cells = summarise_cells(trials, cases, measures)
+    sweeps = find_sweeps(cases, choice)
+    stem = f"sweep_{task.name}_{experiment}"
+    views = [view_of(sweep, cells, measures, stem) for sweep in sweeps]
+    return [_section(*each) for each in zip(views, titles(views, experiment), strict=True)]
 
 
-def plain_overview(task: type[Task]) -> Overview:
-    """Make the overview of a task of which nothing is known but that a trial succeeds or not.
-
-    Parameters
-    ----------
-    task : type
-        The task.
-
-    Returns
-    -------
-    Overview
-        How many trials succeeded.
-    """
-
-    def count(trials: pd.DataFrame) -> dict[str, float]:
-        n, succeeded = len(trials), int(trials[task.success].sum())
-        low, high = wilson(succeeded / n, n)
-        named = {"success": succeeded / n, "success_low": low, "success_high": high}
-        return {"n": n, "succeeded": succeeded, **named}
-
-    return Overview(
-        f"{task.name}_overview",
-        f"Other trials: {task.name}",
-        f"{task.success.capitalize()}: with the 95 % Wilson interval over trials.",
-        count,
-        lambda row: {
-            "Trials": number(row["n"]),
-            f"{task.success.capitalize()}, %": percent(row["success"]),
-            "95 % interval": percent_range((row["success_low"], row["success_high"])),
-        },
+def _section(view: View, title: str) -> Section:
+    sweep = view.sweep
+    figures: list[Figure | None] = []
+    remarks = _remarks(view)
+    if len(sweep.settings) == 2 and sweep.whole:
+        figures += heat_maps(view)
+    elif len(sweep.settings) > 1:
+        weighed, remark = _weigh(view)
+        figures += [parallel(view), effects(view), weighed]
+        remarks.append(remark)
+    elif sweep.factors:
+        figures += [curves(view), shares(view)]
+    best = find_best(view) if sweep.factors else []
+    tables = [*best_table(view, best), _table(view), *problems_table(view)]
+    return Section(
+        title=title,
+        text=(sentence(view), *sentences(view, best)),
+        tables=tuple(tables),
+        figures=tuple(figure for figure in figures if figure is not None),
+        remarks=tuple(remarks),
+        runs=tuple(sorted(sweep.cases.index)),
     )
 
 
-def _plan_cells(row: pd.Series) -> dict[str, str]:
-    return {
-        "Trials": number(row["n"]),
-        "Found, %": percent(row["success"]),
-        "95 % interval": percent_range((row["success_low"], row["success_high"])),
-        "Epochs": number(row["epochs_median"]),
-        "Epochs, if found": number(row["found_epochs_median"]),
-        "Time, ms": number(1000 * row["seconds_median"]),
-        "Above optimal, %": number(100 * (row["optimality_ratio_median"] - 1)),
-        # what authors print is rounded
-        "Length above published, %": number(round(100 * (row["length_ratio_median"] - 1), 2) + 0),
-    }
+def _weigh(view: View) -> tuple[Figure | None, str]:
+    """Tell how much each setting matters, and the map where there are several."""
+    quantity, factors = told_by(view), view.sweep.factors
+    names = {factor.name: factor.title for factor in factors} | {"map": "map"}
+    places = view.sweep.places
+    if len(places) > 1:
+        factors = (*factors, Factor("map", tuple(places), numeric=False))
+    cells = view.cells.assign(map=view.cells["place"])
+    found = importance(cells, factors, results(view, quantity))
+    knows = "" if math.isnan(found.explained) else (
+        f" A forest of {quantity.title} explains {percent(max(found.explained, 0))} % of the "
+        "variance of cells that its trees did not see (R², out of bag)."
+    )  # fmt: skip
+    if found.why:
+        return None, f"How much each setting matters cannot be told: {found.why}.{knows}"
+    told = [names[weight.name] for weight in found.weights if weight.told]
+    others = [names[weight.name] for weight in found.weights if not weight.told]
+    words = f"What matters, most first: {', '.join(told) or 'nothing that can be told'}."
+    if others:
+        words += f" Of {', '.join(others)} it cannot be told that it matters."
+    return importances(view, found, names), words + knows
 
 
-def _drive_cells(row: pd.Series) -> dict[str, str]:
-    return {
-        "Drives": number(row["n"]),
-        "Reached, %": rate(row, "reached"),
-        "Returned, %": rate(row, "returned"),
-        "Overran, %": rate(row, "overran"),
-        "Steps / shortest": middle(*(row[f"steps_ratio_{key}"] for key in ("median", "q1", "q3"))),
-        "Time, ms": number(1000 * row["seconds_median"]),
-    }
+def titles(views: Sequence[View], experiment: str) -> list[str]:
+    """Call each section by the experiment, and where there are several by what varied."""
+    drives = f" ({views[0].measures.unit})" if views[0].measures.unit != TRIALS else ""
+    if len(views) == 1:
+        return [experiment + drives]
+    return [f"{experiment}{drives}: {_what(view)}" for view in views]
 
 
-_OVERVIEWS: dict[type[Row], Overview] = {
-    PlanRow: Overview(
-        "overview",
-        "Other trials",
-        "Found: with the 95 % Wilson interval over trials; epochs of all trials and of those that "
-        "found a path, time, and what the planner minimises (weights or octile length) above the "
-        "least there is are medians, as is the octile length above what the map's author gives.",
-        summarise,
-        _plan_cells,
-    ),
-    DriveRow: Overview(
-        "drives_overview",
-        "Other drives",
-        "How drives ended, with the 95 % Wilson interval over drives; median (quartiles) of "
-        "steps / shortest where the target was reached, median computing time of all drives.",
-        summarise_drives,
-        _drive_cells,
-    ),
-}
-"""Rows, and what is derived from them, of which more can be said than how many succeeded."""
+def _what(view: View) -> str:
+    factors = view.sweep.settings or view.sweep.factors
+    return ", ".join(factor.name for factor in factors[:3]) or "other trials"
+
+
+def _table(view: View) -> Table:
+    rows = _sorted(view)
+    data = rows.drop(columns=["cell", "runs"])
+    shown = pd.DataFrame([_cells(view, row) for _, row in rows.head(_ROWS).iterrows()])
+    heads, behind = 1 + len(_heads(view)), tuple(rows["runs"].head(_ROWS))
+    return Table(view.stem, _caption(view, len(rows)), data, shown, heads=heads, runs=behind)
+
+
+def _sorted(view: View) -> pd.DataFrame:
+    """Sort cells by map, and within one by the only setting, or the best first."""
+    factors, rows = view.sweep.factors, view.cells.copy()
+    columns = {"map": rows["place"].map(rank), "best": -rows["success"]}
+    first = view.measures.efforts[0] if view.measures.efforts else None
+    columns["effort"] = rows[f"expected_{first.name}"] if first else 0.0
+    if len(view.sweep.settings) == 1 or not factors:
+        columns["preset"] = rows["preset"].map(rank)
+        for factor in view.sweep.settings:
+            places = {repr(level): i for i, level in enumerate(factor.levels)}
+            columns["level"] = rows[factor.name].map(lambda value, p=places: p[repr(value)])
+        by = ["map", "preset", *(["level"] if view.sweep.settings else ["method"])]
+    else:
+        by = ["map", "best", "effort"]
+    columns["method"] = rows["method"].map(rank)
+    order = pd.DataFrame(columns).sort_values(by, kind="stable").index
+    return rows.loc[order]
+
+
+def _heads(view: View) -> list[str]:
+    """Give the columns of cells that name a row behind its map."""
+    return [factor.name for factor in view.sweep.factors] or [view.sweep.choice]
+
+
+def _cells(view: View, row: pd.Series) -> dict[str, str]:
+    measures, cells = view.measures, view.cells
+    titles = {factor.name: factor.title.capitalize() for factor in view.sweep.factors}
+    titles.setdefault(view.sweep.choice, view.sweep.choice.capitalize())
+    shown = {"Map": view.labels[row["place"]]}
+    for name in _heads(view):
+        shown[titles[name]] = text(row[name])
+    if cells["problems"].max() > 1:
+        shown |= {
+            "Problems": number(row["problems"]),
+            "Solved once": number(row["once"]),
+            "Always": number(row["always"]),
+        }
+    shown[measures.unit.capitalize()] = number(row["n"])
+    shown[f"{measures.succeeded}, %"] = rate(row)
+    for effort in view.efforts:
+        shown[f"Expected {effort.title}"] = amount(row, effort)
+    for effort in view.efforts:
+        shown[f"Median {effort.title}"] = number(row[f"{effort.name}_median"] * effort.scale)
+    for middle in measures.middles:
+        if cells[f"{middle.name}_median"].notna().any():
+            shown[middle.title] = number(middle.shown(row[f"{middle.name}_median"]))
+    for share in measures.shares:
+        if cells[share.name].any():
+            shown[share.title] = percent(row[share.name])
+    return shown
+
+
+def _caption(view: View, count: int) -> str:
+    measures = view.measures
+    parts = [f"{measures.succeeded}: with the 95 % Wilson interval over {measures.unit}"]
+    if view.cells["problems"].max() > 1:
+        parts[0] += ", of these problems"
+        parts.append("solved once, always: in how many problems some or all succeeded")
+    if view.efforts:
+        parts.append(
+            "expected: what all spent for each success, with the 95 % interval by the delta method"
+        )
+    if measures.middles or view.efforts:
+        parts.append("medians are of all, failures included, but what is above the least of "
+                     "those that succeeded")  # fmt: skip
+    if view.cells["success_low"].isna().any():
+        parts.append("what has no chance has no interval")
+    if count > _ROWS:
+        parts.append(f"the page has {_ROWS} of {number(count)} rows, the CSV has all")
+    return "; ".join(parts) + "."
+
+
+def _remarks(view: View) -> list[str]:
+    remarks = [
+        f"{name} changed with {other}: what it does by itself is not told."
+        for name, other in view.sweep.together
+    ]
+    pairs = view.sweep.cases.drop_duplicates(["place", "method", "problem"])
+    tried = pairs.groupby(["place", "problem"]).size()
+    most = view.cells.groupby("place").size()
+    if (tried < most.reindex(tried.index.get_level_values("place")).to_numpy()).any():
+        remarks.append("Not all were tried on the same problems: rows of one map may differ by it.")
+    return remarks

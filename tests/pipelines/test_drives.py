@@ -15,7 +15,6 @@ from gapath.pipelines.numbers.drive_summary import rate, summarise_drives
 from gapath.pipelines.numbers.statistics import wilson
 from gapath.pipelines.numbers.summary import over_instances
 from gapath.pipelines.report.report import make_report
-from gapath.pipelines.sweeps import table as table_drives_overview
 from gapath.problem import Answer, PlanStatus, Problem
 from gapath.recorders.mcap import FILE
 from gapath.store.records import find_runs
@@ -23,10 +22,7 @@ from gapath.store.records import find_runs
 from .conftest import collect, sign
 from .synthetic import drive_settings, make_map, make_path
 
-TABLES = (
-    table_drives, table_drive_calls, table_drive_classes, table_drive_choices,
-    table_drives_overview,
-)  # fmt: skip
+TABLES = (table_drives, table_drive_calls, table_drive_classes, table_drive_choices)
 
 
 @pytest.fixture(scope="module")
@@ -64,7 +60,9 @@ def test_plans_and_drives_do_not_mix(tmp_path, make_run, make_drive_run):
     assert "planner" not in drives
     assert plans["feasible"].dtype == drives["reached"].dtype == bool
     page = make_report(tmp_path, tmp_path / "report")[0][-1].read_text()
-    assert page.count("Other trials") == page.count("Other drives") == 2  # heading and link
+    for task in ("plan", "drive"):
+        assert f'<section id="sweeps-table-{task}-mine">' in page
+    assert "mine (drives)" in page
     assert "7 trials in 2 runs" in page
 
 

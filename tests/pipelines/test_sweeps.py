@@ -6,11 +6,10 @@ import pandas as pd
 import pytest
 
 from gapath.discovery import load
-from gapath.pipelines.numbers.statistics import wilson
 from gapath.pipelines.numbers.text import NOTHING
 from gapath.pipelines.page.section import ALL, find_sections
 from gapath.pipelines.report.report import make_report
-from gapath.pipelines.sweeps import table, table_metrics
+from gapath.pipelines.sweeps import table_metrics
 from gapath.store.records import find_runs
 from gapath.task import find_task, metrics
 from gapath.tasks.plan import Task as PlanTask
@@ -30,8 +29,7 @@ class RoundTrip(PlanTask):
 @pytest.fixture
 def round_trip(monkeypatch):
     """Let the sections find the task."""
-    for module in (table, table_metrics):
-        monkeypatch.setattr(module, "find_task", lambda name: RoundTrip)
+    monkeypatch.setattr(table_metrics, "find_task", lambda name: RoundTrip)
     return [record_of("astar", "a", task="round_trip")]
 
 
@@ -112,33 +110,12 @@ def test_every_task_has_its_metrics(tmp_path, make_run, make_drive_run):
         assert list(rows["n"]) == [{"plan": 3, "drive": 4}[task]]
         assert find_task(task).groups[0] in rows
         assert f'id="sweeps-table-metrics-{task}"' in page
-    assert "Other trials" not in page and "Other drives" not in page
+    assert "sweeps-table-plan" not in page and "sweeps-table-drive" not in page
 
 
 def test_metrics_are_asked_for_every_task_and_experiment():
     asked = [module for module in find_sections() if module.TASK == ALL == module.EXPERIMENT]
     assert asked == [table_metrics]
-
-
-def test_a_task_without_a_section_has_a_plain_overview(round_trip):
-    frame = trials(
-        came_back=[True, True, False, True, False],
-        planner=["ga1", "ga1", "ga1", "ga1", "astar"],
-        map_instance=[0, 0, 1, 1, 0],
-    )
-    made = table.section(frame, round_trip)
-    (overview,) = made.tables
-    assert (overview.name, made.title) == ("round_trip_overview", "Other trials: round_trip")
-    first, second = overview.data.to_dict("records")
-    assert (first["planner"], first["instances"], first["n"]) == ("ga1", 2, 4)
-    assert (first["succeeded"], first["success"]) == (3, 0.75)
-    assert (first["success_low"], first["success_high"]) == wilson(0.75, 4)
-    assert (second["planner"], second["instances"], second["succeeded"]) == ("astar", 1, 0)
-    shown = overview.shown.to_dict("records")[0]
-    assert (shown["Trials"], shown["Came_back, %"]) == ("4", "75")
-    assert shown["From, to"] == "(1, 6) (22, 6)"
-    assert shown["95 % interval"] == "30.1 to 95.4"
-    assert overview.latex().isascii()
 
 
 def test_a_task_without_a_section_has_metrics_of_what_succeeded(round_trip):

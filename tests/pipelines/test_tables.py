@@ -9,7 +9,6 @@ from gapath.pipelines.numbers.summary import summarise, summarise_by
 from gapath.pipelines.page.section import Table
 from gapath.pipelines.papers.kg18 import SECONDS, implied_epochs
 from gapath.pipelines.papers.names import label, rank
-from gapath.pipelines.sweeps import table as table_overview
 from gapath.store.records import find_runs
 
 from .conftest import collect
@@ -124,14 +123,6 @@ def test_classes_count_instances_not_trials():
     assert row["epochs_median"] == 3
 
 
-def test_overview_has_a_row_for_each_setting(outputs):
-    frame = collect(outputs).trials["plan"]
-    (table,) = table_overview.section(frame, find_runs(outputs)).tables
-    assert len(table.shown) == 40
-    assert table.data["n"].sum() == len(frame)
-    assert set(table.data["instances"]) == {1, 3}
-
-
 def test_the_three_forms_of_a_table():
     shown = pd.DataFrame({"A_b": ["x & y", "∞"], "B, %": ["1\N{THIN SPACE}000", "< 0.1"]})
     table = Table("name", "100 % of it", pd.DataFrame({"a": [1.5, math.inf]}), shown)
@@ -148,7 +139,7 @@ def test_the_three_forms_of_a_table():
 
 def test_every_latex_table_is_ascii(outputs):
     frame = collect(outputs).trials["plan"]
-    for module in (table1, table_classes, table_overview):
+    for module in (table1, table_classes):
         for table in module.section(frame, find_runs(outputs)).tables:
             assert table.latex().isascii()
 
