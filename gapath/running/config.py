@@ -61,7 +61,7 @@ class Root:
     kernels: str
 
 
-RESERVED = ("bench", "report")
+RESERVED = ("bench", "compare", "report")
 """Folders of outputs that hold no runs."""
 
 HOW = ("output", "force", "threads", "kernels")

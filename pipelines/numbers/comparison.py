@@ -5,16 +5,16 @@ or more groups it is asked first whether they differ at all.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gapath.pipelines.numbers.expected import Expected, expected
 from gapath.pipelines.numbers.groups import Groups, Overlap, Table, overlap
+from gapath.pipelines.numbers.omnibus import Omnibus, blocks_differ, samples_differ
 from gapath.pipelines.numbers.pairwise import (
     LEVEL,
     Difference,
@@ -44,7 +44,10 @@ _ALL_PAIRS = 12
 
 
 class Estimate(NamedTuple):
-    """A group's own number with its 95 % interval; None where it cannot be had, and why."""
+    """A group's own number with its 95 % interval; None where it cannot be had, and why.
+
+    `rank` is its mean rank, 1 for the best, in the blocks in which all groups stand.
+    """
 
     group: str
     n: int
@@ -52,6 +55,7 @@ class Estimate(NamedTuple):
     low: float | None = None
     high: float | None = None
     why: str = ""
+    rank: float | None = None
 
 
 class Pair(NamedTuple):
@@ -76,20 +80,6 @@ class Pair(NamedTuple):
         )
 
 
-class Omnibus(NamedTuple):
-    """Whether three or more groups differ at all.
-
-    `blocks` is in how many blocks all of them stand, 0 where their trials were taken unpaired;
-    `ranks` are the groups' mean ranks in these, 1 for the least; None for what is not there.
-    """
-
-    test: str
-    p: float | None
-    blocks: int
-    ranks: tuple[float, ...] | None
-    why: str = ""
-
-
 @dataclass(frozen=True)
 class Comparison:
     """What groups come to in one quantity.
@@ -99,17 +89,21 @@ class Comparison:
     quantity : str
         One of `QUANTITIES`.
     estimates : tuple of Estimate
-        Of all groups, best first, those without a number last.
+        Of all groups, best first, those without a number last: by their number, but amounts of
+        trials on several problems, which are not of one size, by rank if there is one.
     pairs : tuple of Pair
         All pairs of the groups that have a number, in the order of the groups.
     omnibus : Omnibus or None
         None for two groups, and for expected amounts.
+    by_rank : bool
+        Whether the groups stand in the order of their ranks, not of their numbers.
     """
 
     quantity: str
     estimates: tuple[Estimate, ...]
     pairs: tuple[Pair, ...]
     omnibus: Omnibus | None
+    by_rank: bool = False
 
     @property
     def best(self) -> Estimate | None:
@@ -144,47 +138,95 @@ def compare(groups: Groups, quantity: str) -> Comparison:
     Comparison
         With reasons in words where a number cannot be had; the same for the same groups.
     """
-    name = quantity.removeprefix("expected_")
-    if quantity == "success":
-        values = groups.success
-    elif name in groups.spent:
-        values = groups.spent[name]
-    else:
-        none = (Estimate(group, 0, None, why="this task has none") for group in groups.names)
-        return Comparison(quantity, tuple(none), (), None)
-    found = expected(values, groups.success) if name != quantity else None
-    estimates = [_estimate(groups, quantity, values, at, found) for at in range(len(groups.names))]
-    usable = [at for at, each in enumerate(estimates) if each.value is not None]
-    best = min(usable, key=lambda at: _badness(estimates[at], quantity), default=None)
-    order = sorted(range(len(estimates)), key=lambda at: _badness(estimates[at], quantity))
+    rate = quantity == "success"
+    values = _values(groups, quantity)
+    own, found = _estimated(groups, quantity, values)
+    usable = [at for at, each in enumerate(own) if each.value is not None]
     count = overlap(values, groups.blocks)
+    blocks = _blocks(values, usable, count) if found is None else None
+    if blocks is not None:
+        for at, rank in zip(usable, _mean_ranks(blocks, rate), strict=True):
+            own[at] = own[at]._replace(rank=rank)
+    by_rank = blocks is not None and not rate and groups.problems > 1
+    order = _in_order(own, quantity, by_rank)
     omnibus = None
     if len(usable) > 2 and found is None:
-        omnibus = _omnibus(values, usable, count, quantity == "success")
-    pairs: tuple[Pair, ...] = ()
-    if best is not None:
-        all_pairs = list(combinations(usable, 2))
-        shown = [len(usable) <= _ALL_PAIRS or best in pair for pair in all_pairs]
-        if found is not None:
-            differences = list(found.differences(all_pairs, shown))
-        elif quantity == "success":
-            differences = list(_rates(groups, count, all_pairs))
-        else:
-            differences = list(_amounts(values, count, all_pairs, shown))
-        idle = [not groups.chance[i] and not groups.chance[j] for i, j in all_pairs]
-        if name != "time":
-            differences = [
-                _without_chance(each) if still else each
-                for each, still in zip(differences, idle, strict=True)
-            ]
-        pairs = tuple(_judged(groups.names, count, all_pairs, differences, omnibus))
-    return Comparison(quantity, tuple(estimates[at] for at in order), pairs, omnibus)
+        columns = [values[~np.isnan(values[:, at]), at] for at in usable]
+        omnibus = samples_differ(columns, rate) if blocks is None else blocks_differ(blocks, rate)
+    all_pairs = list(combinations(usable, 2))
+    shown = [len(usable) <= _ALL_PAIRS or order[0] in pair for pair in all_pairs]
+    if found is not None:
+        differences = found.differences(all_pairs, shown)
+    elif rate:
+        differences = _rates(groups, count, all_pairs)
+    else:
+        differences = _amounts(values, count, all_pairs, shown)
+    if not quantity.endswith("time"):  # which differs whatever is done
+        differences = _of_chance(groups, all_pairs, differences)
+    pairs = _judged(groups.names, count, all_pairs, list(differences), omnibus)
+    return Comparison(quantity, tuple(own[at] for at in order), tuple(pairs), omnibus, by_rank)
 
 
-def _badness(estimate: Estimate, quantity: str) -> float:
-    if estimate.value is None:
-        return math.inf
-    return -estimate.value if quantity == "success" else estimate.value
+def estimates(groups: Groups, quantity: str) -> list[Estimate]:
+    """Give each group's own number, in the order of the groups.
+
+    Parameters
+    ----------
+    groups : Groups
+        One or more.
+    quantity : str
+        One of `QUANTITIES`.
+
+    Returns
+    -------
+    list of Estimate
+        Without ranks.
+    """
+    return _estimated(groups, quantity, _values(groups, quantity))[0]
+
+
+def _values(groups: Groups, quantity: str) -> Table:
+    if quantity == "success":
+        return groups.success
+    name = quantity.removeprefix("expected_")
+    return groups.spent.get(name, np.full(groups.success.shape, np.nan))
+
+
+def _estimated(
+    groups: Groups, quantity: str, values: Table
+) -> tuple[list[Estimate], Expected | None]:
+    found = expected(values, groups.success) if quantity.startswith("expected_") else None
+    places = range(len(groups.names))
+    return [_estimate(groups, quantity, values, at, found) for at in places], found
+
+
+def _in_order(estimates: Sequence[Estimate], quantity: str, by_rank: bool) -> list[int]:
+    def badness(at: int) -> float:
+        value, rank = estimates[at].value, estimates[at].rank
+        if value is None:
+            return math.inf
+        if by_rank and rank is not None:
+            return rank
+        return -value if quantity == "success" else value
+
+    return sorted(range(len(estimates)), key=badness)
+
+
+def _blocks(values: Table, usable: Sequence[int], count: Overlap) -> Table | None:
+    """Give the blocks in which all groups stand, if half of the smallest one's trials are there."""
+    if len(usable) < 2:
+        return None
+    chosen = values[:, list(usable)]
+    blocks: Table = chosen[~np.isnan(chosen).any(axis=1)]
+    enough = count.pairs.any() and 2 * len(blocks) >= min(count.trials[list(usable)])
+    return blocks if enough else None
+
+
+def _mean_ranks(blocks: Table, rate: bool) -> list[float]:
+    from scipy.stats import rankdata
+
+    ranks = rankdata(-blocks if rate else blocks, axis=1).mean(axis=0)
+    return [float(rank) for rank in ranks]
 
 
 def _estimate(
@@ -194,24 +236,30 @@ def _estimate(
     known = values[:, at][~np.isnan(values[:, at])]
     n = len(known)
     if n == 0:
-        trials = np.count_nonzero(~np.isnan(groups.success[:, at]))
-        return Estimate(group, 0, None, why="no trial succeeded" if trials else "no trials")
+        none = quantity.removeprefix("expected_") not in (*groups.spent, "success")
+        why = "no number, since this task has none" if none else "no trial succeeded"
+        return Estimate(group, 0, None, why=why)
     if quantity.endswith("evaluations") and not known.any():
-        return Estimate(group, n, None, why="draws no random numbers, so evaluates nothing")
+        return Estimate(group, n, None, why="no number, since without chance nothing is evaluated")
     if found is not None:
         return Estimate(group, n, *found.estimate(at))
     if quantity != "success":
         return Estimate(group, n, float(np.median(known)), *median_interval(known))
     rate = float(known.mean())
     if not groups.chance[at]:
-        why = "draws no random numbers: its trials are one and the same"
+        why = "no interval, since without chance all trials on a problem are one"
         return Estimate(group, n, rate, why=why)
     return Estimate(group, n, rate, *wilson(rate, n))
 
 
-def _without_chance(found: Difference) -> Difference:
-    why = "neither draws random numbers: what they do is no sample"
-    return found._replace(p=None, low=None, high=None, why=why)
+def _of_chance(
+    groups: Groups, pairs: Sequence[tuple[int, int]], differences: Iterable[Difference]
+) -> Iterator[Difference]:
+    """Leave no test to pairs of groups that draw no random numbers."""
+    why = "without chance in either what they do is no sample"
+    for (i, j), found in zip(pairs, differences, strict=True):
+        chance = groups.chance[i] or groups.chance[j]
+        yield found if chance else found._replace(p=None, low=None, high=None, why=why)
 
 
 def _rates(
@@ -281,43 +329,3 @@ def _judged(
         paired = int(count.pairs[i, j]) if count.paired(i, j) else 0
         apart = p is not None and p < LEVEL and differ
         yield Pair(names[i], names[j], paired, found, p, apart)
-
-
-def _omnibus(values: Table, usable: list[int], count: Overlap, rate: bool) -> Omnibus:
-    """Ask whether groups differ at all: in blocks if half of the smallest group's have all."""
-    chosen = values[:, usable]
-    blocks = chosen[~np.isnan(chosen).any(axis=1)]
-    in_blocks = count.pairs[np.ix_(usable, usable)].any()
-    if in_blocks and 2 * len(blocks) >= min(count.trials[usable]):
-        return _blocks_differ(blocks, rate)
-    columns = [column[~np.isnan(column)] for column in chosen.T]
-    return _samples_differ(columns, rate)
-
-
-def _blocks_differ(blocks: NDArray[np.float64], rate: bool) -> Omnibus:
-    from scipy.stats import friedmanchisquare, rankdata
-    from statsmodels.stats.contingency_tables import cochrans_q
-
-    n, test = len(blocks), "Cochran's Q" if rate else "Friedman"
-    ranks = tuple(float(rank) for rank in rankdata(blocks, axis=1).mean(axis=0))
-    if n < 2:
-        return Omnibus(test, None, n, None, "one block only, too few for a test")
-    if (blocks == blocks[:, :1]).all():
-        return Omnibus(test, 1.0, n, ranks, "the same in all blocks")
-    p = cochrans_q(blocks).pvalue if rate else friedmanchisquare(*blocks.T).pvalue
-    return Omnibus(test, float(p), n, ranks)
-
-
-def _samples_differ(columns: Sequence[NDArray[np.float64]], rate: bool) -> Omnibus:
-    from scipy.stats import chi2_contingency, kruskal
-
-    test = "chi-squared" if rate else "Kruskal-Wallis"
-    if min(map(len, columns)) < 2:
-        return Omnibus(test, None, 0, None, "a group of one trial only, too few for a test")
-    everything = np.concatenate(columns)
-    if (everything == everything[0]).all():
-        return Omnibus(test, 1.0, 0, None, "the same in all trials")
-    if rate:
-        table = [[column.sum(), len(column) - column.sum()] for column in columns]
-        return Omnibus(test, float(chi2_contingency(table).pvalue), 0, None)
-    return Omnibus(test, float(kruskal(*columns).pvalue), 0, None)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 Table = NDArray[np.float64]
 
-PROBLEM = ("map_digest", "map_instance", "start", "target", "corner_cutting")
+PROBLEM = ("map_digest", "map_instance", "start", "target")
 """Columns that say what is planned or driven: a map's content, not its name."""
 
 SPENT = {
@@ -40,6 +40,8 @@ class Groups:
         Trials that were left out, since another has the same block and group.
     blocks : bool
         Whether rows are blocks: not where no two trials pair, so that they stand as they come.
+    problems : int
+        How many problems there are.
     """
 
     names: tuple[str, ...]
@@ -48,6 +50,7 @@ class Groups:
     chance: tuple[bool, ...]
     repeated: int
     blocks: bool = True
+    problems: int = 1
 
 
 class Overlap(NamedTuple):
@@ -137,7 +140,7 @@ def side_by_side(
         if column in kept
     }
     return Groups(names, table(found), spent, _chance(kept, success, frame["group"], names),
-                  int((~once).sum()), blocks)  # fmt: skip
+                  int((~once).sum()), blocks, len(runs.groupby(list(PROBLEM))))  # fmt: skip
 
 
 def _chance(

@@ -14,7 +14,7 @@ from gapath.store.inputs import Inputs, contents, without_paths
 from gapath.store.records import RunRecord
 from gapath.store.settings import Value, tabular
 
-_NO_METHOD = ("task", "name", "map", "recorder", "seed", "trials")
+NO_METHOD = ("task", "name", "map", "recorder", "seed", "trials")
 """Settings that say nothing of what is tried."""
 
 Trait = Callable[[RunRecord], Mapping[str, Value]]
@@ -53,7 +53,7 @@ def told_apart(runs: Sequence[RunRecord]) -> list[RunRecord]:
 def tried(run: RunRecord) -> dict[str, Value]:
     """Give the settings of what a run tries, by their names, without paths and the map's."""
     settings = tabular(without_paths(run.settings, run.known.method_inputs)).items()
-    return {key: value for key, value in settings if key.partition(".")[0] not in _NO_METHOD}
+    return {key: value for key, value in settings if key.partition(".")[0] not in NO_METHOD}
 
 
 def _map(run: RunRecord) -> dict[str, Value]:

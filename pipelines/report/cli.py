@@ -14,9 +14,11 @@ commands:
   gapath-report OUTPUTS [-o DIR]   write the report
   gapath-report runs [OUTPUTS]     list the run folders, and answer questions about them:
                                    gapath-report runs --help
+  gapath-report compare [OUTPUTS]  say which of two or more groups of runs is best, and from
+                                   which others it can be told apart: compare --help
 
 Runs that cannot be used are named, with the reason, and left out. A folder that is itself
-called "runs" is given as ./runs.
+called "runs" or "compare" is given as ./runs or ./compare.
 """
 
 
@@ -40,6 +42,10 @@ def main(argv: Sequence[str] | None = None) -> int:
 
             gc.disable()  # ten thousand records, none of them garbage: a fifth of the time
             command.main(arguments[1:])
+        elif arguments[:1] == ["compare"]:
+            from gapath.pipelines.compare import command as comparing
+
+            comparing.run(arguments[1:])
         else:
             chosen = _report_parser().parse_args(arguments)
             _report(chosen.outputs, chosen.output or chosen.outputs / "report")

@@ -1,0 +1,1 @@
+"""From a question to whether groups of runs differ: `gapath-report compare`."""

@@ -1,0 +1,205 @@
+"""Which runs stand in which group, and what pairs their trials."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from gapath.errors import InputError, require
+from gapath.pipelines.papers.names import label, rank
+from gapath.pipelines.reading.collect import Skipped, read_trials
+from gapath.pipelines.reading.frame import chosen, run_frame
+from gapath.pipelines.reading.names import NO_METHOD
+from gapath.pipelines.reading.query import near
+from gapath.store.records import RunRecord, find_runs
+from gapath.store.settings import Value, tabular
+from gapath.task import Task, find_task
+
+_NAMES = ("method", "preset", "map")
+"""What `--by` may name that the papers have names for, in an order of their own."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Trials and the groups that they stand in.
+
+    Parameters
+    ----------
+    task : type
+        The task of all of them.
+    trials : DataFrame
+        One row a trial, with a column for each name in `also`.
+    group : Series
+        The group of each trial: ordered categories, as people read them.
+    also : tuple of str
+        Settings that vary within a group, so that trials pair only where these are equal.
+    beside : tuple of str
+        Settings that differ between the groups besides what was asked for.
+    left_out : tuple of Skipped
+        Runs that no number is made from, and why.
+    versions : tuple of str
+        The versions of gapath that made the runs.
+    """
+
+    task: type[Task]
+    trials: pd.DataFrame
+    group: pd.Series
+    also: tuple[str, ...]
+    beside: tuple[str, ...]
+    left_out: tuple[Skipped, ...]
+    versions: tuple[str, ...]
+
+
+def choose(outputs: Path, by: str | None, wheres: Sequence[str]) -> Choice:
+    """Read the runs below a folder that are to be compared.
+
+    Parameters
+    ----------
+    outputs : Path
+        The folder that holds ``<experiment>/<key>/``.
+    by : str or None
+        What tells the groups apart: a setting, or a column of `run_frame` as method or preset.
+    wheres : sequence of str
+        Conditions (`gapath.pipelines.reading.frame.chosen`): with `by` at most one, that all runs
+        fulfil; without, one for each group.
+
+    Returns
+    -------
+    Choice
+        Two groups at least.
+
+    Raises
+    ------
+    InputError
+        If a condition or column is wrong, a group is empty, a run would be in two of them, or
+        there is only one group.
+    """
+    if by is None:
+        require(len(wheres) > 1, "compare", f"{len(wheres)} --where and no --by",
+                "--by SETTING, or a --where for each of two or more groups")  # fmt: skip
+    else:
+        require(len(wheres) < 2, "compare", f"--by {by} and {len(wheres)} --where", "one --where "
+                "beside --by, its conditions joined by and")  # fmt: skip
+    records = find_runs(outputs)
+    frame = run_frame(records).reset_index()  # a run is its place: a copy has the same key
+    if by is not None:
+        columns = list(frame.columns)
+        require(by in columns, "--by", by, f"a setting or column of the runs{near(by, columns)}")
+    where_of = _where_of(frame, wheres) if by is None else {}
+    kept = list(where_of) if by is None else list(_filtered(frame, wheres).index)
+    collected = read_trials([records[place] for place in kept])
+    used = collected.runs
+    left_out = list(collected.skipped)
+    require(bool(used), outputs, f"{len(kept)} runs of which none can be used"
+            + "".join(f"; {run}: {reason}" for run, reason in left_out[:1]),
+            "a finished run")  # fmt: skip
+    if by is None:
+        place_of = {records[place].folder: place for place in kept}
+        values: dict[str, Any] = {run.folder.name: where_of[place_of[run.folder]] for run in used}
+        for where in wheres:
+            require(where in values.values(), "--where", where, "a condition that a run which can "
+                    "be used fulfils")  # fmt: skip
+        names = list(wheres)
+    else:
+        values = _values_of(used, frame.assign(folder=[run.folder for run in records]), by)
+        lacking = [run for run in used if values[run.folder.name] is None]
+        left_out += [Skipped(run.name, f"has no {by}") for run in lacking]
+        used = [run for run in used if run not in lacking]
+        names = _in_order({values[run.folder.name] for run in used}, by)
+        only = f"{len(used)} runs" + (f", all of {_shown(names[0], by)}" if names else "")
+        require(len(names) > 1, "--by", f"{by}: {only}", "two values or more")
+    tasks = sorted({run.known.task for run in used})
+    require(len(tasks) == 1, "task", ", ".join(tasks), "runs of one task; choose it by --where "
+            "\"task='plan'\"")  # fmt: skip
+    return _choice(tasks[0], used, collected.trials[tasks[0]], (by, values, names), left_out)
+
+
+def _choice(
+    name: str,
+    used: Sequence[RunRecord],
+    trials: pd.DataFrame,
+    groups: tuple[str | None, Mapping[str, Any], Sequence[Any]],
+    left_out: Sequence[Skipped],
+) -> Choice:
+    by, values, names = groups
+    settings = {run.folder.name: _treatment(run) for run in used}
+    varying = _varying(settings.values())
+    varying = [setting for setting in varying if setting != by]
+    mine: dict[Any, list[Mapping[str, Value]]] = {each: [] for each in names}
+    for run in used:
+        mine[values[run.folder.name]].append(settings[run.folder.name])
+    within = {setting for each in mine.values() for setting in _varying(each)}
+    also = tuple(setting for setting in varying if setting in within)
+    method = by in ("method", "preset")
+    beside = () if method else tuple(setting for setting in varying if setting not in within)
+    trials = trials[trials["key"].isin(list(settings))]
+    keys = trials["key"]
+    trials = trials.assign(
+        **{
+            setting: keys.map({key: each.get(setting) for key, each in settings.items()})
+            for setting in also
+        }
+    )
+    group = keys.map(values).astype(pd.CategoricalDtype(names, ordered=True))
+    group = group.cat.rename_categories([_shown(each, by) for each in names])
+    versions = sorted({str(run.known.versions.get("gapath", "?")) for run in used})
+    return Choice(find_task(name), trials, group, also, beside, tuple(sorted(left_out)),
+                  tuple(versions))  # fmt: skip
+
+
+def _filtered(frame: pd.DataFrame, wheres: Sequence[str]) -> pd.DataFrame:
+    for where in wheres:
+        frame = chosen(frame, where)
+        require(len(frame) > 0, "--where", where, "a condition that a run fulfils")
+    return frame
+
+
+def _where_of(frame: pd.DataFrame, wheres: Sequence[str]) -> dict[int, str]:
+    """Give each run's place the condition that it fulfils."""
+    found: dict[int, str] = {}
+    for where in wheres:
+        for place in _filtered(frame, [where]).index:
+            other = found.setdefault(int(place), where)
+            if other is not where:
+                key = frame["key"][place]
+                raise InputError("--where", f"{key} in two groups, {other} and {where}",
+                                 "a run in one group only")  # fmt: skip
+    return found
+
+
+def _values_of(used: Sequence[RunRecord], frame: pd.DataFrame, by: str) -> dict[str, Any]:
+    """Give each run's value of a column; None where it has none."""
+    if by in ("method", "map"):  # names that tell different ones apart
+        return {run.folder.name: getattr(run.known, by) for run in used}
+    column = dict(zip(frame["folder"], frame[by].astype(object), strict=True))
+    values = {run.folder.name: column[run.folder] for run in used}
+    return {key: None if pd.isna(value) else value for key, value in values.items()}
+
+
+def _in_order(values: set[Any], by: str) -> list[Any]:
+    if by in _NAMES:
+        return sorted(values, key=lambda value: rank(str(value)))
+    return sorted(values, key=lambda value: (isinstance(value, str), value))
+
+
+def _shown(value: Any, by: str | None) -> str:
+    if by in _NAMES:
+        return label(str(value))
+    if isinstance(value, bool):
+        return str(value).lower()
+    return f"{value:.12g}" if isinstance(value, float) else str(value)
+
+
+def _treatment(run: RunRecord) -> dict[str, Value]:
+    """Give the settings that say how trials are done, not on which map or how many."""
+    items = tabular(run.settings).items()
+    return {key: value for key, value in items if key.partition(".")[0] not in NO_METHOD}
+
+
+def _varying(settings: Any) -> list[str]:
+    """Give the settings that differ, or are not everywhere."""
+    settings = list(settings)
+    names = dict.fromkeys(name for each in settings for name in each)
+    return [name for name in names if len({str(each.get(name)) for each in settings}) > 1]
