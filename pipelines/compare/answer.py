@@ -77,16 +77,15 @@ class Answer:
     def text(self, rows: int) -> str:
         """Write it for a terminal, tables with so many rows."""
         lines = [self.heading]
-        said = self.said()
+        for quantity, found in self.said().items():
+            lines += ["", WORDINGS[quantity].title, *(f"  {each}" for each in found)]
         for comparison in self.comparisons:
-            lines += ["", WORDINGS[comparison.quantity].title, *said[comparison.quantity]]
             if comparison.pairs:
                 table = shown(comparison, self.by)
                 text = tabulate(table.head(rows), headers="keys", showindex=False,
                                 disable_numparse=True)  # fmt: skip
-                lines += [f"  {line}" for line in text.split("\n")]
-                if len(table) > rows:
-                    lines.append(f"  and {len(table) - rows} more in the files")
+                more = f"\nand {len(table) - rows} more in the files" if len(table) > rows else ""
+                lines += ["", text + more]
         return "\n".join([*lines, "", *self.remarks])
 
     def files(self) -> list[tuple[str, bytes]]:

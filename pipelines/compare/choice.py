@@ -17,8 +17,11 @@ from gapath.store.records import RunRecord, find_runs
 from gapath.store.settings import Value, tabular
 from gapath.task import Task, find_task
 
+_OWN = ("method", "preset", "experiment", "map", "map_instance", "start", "target", "seed")
+"""What `--by` may name besides settings."""
+
 _NAMES = ("method", "preset", "map")
-"""What `--by` may name that the papers have names for, in an order of their own."""
+"""Those that the papers have names for, in an order of their own."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +63,7 @@ def choose(outputs: Path, by: str | None, wheres: Sequence[str]) -> Choice:
     outputs : Path
         The folder that holds ``<experiment>/<key>/``.
     by : str or None
-        What tells the groups apart: a setting, or a column of `run_frame` as method or preset.
+        What tells the groups apart: a setting under its full name, method, or another of `_OWN`.
     wheres : sequence of str
         Conditions (`gapath.pipelines.reading.frame.chosen`): with `by` at most one, that all runs
         fulfil; without, one for each group.
@@ -83,41 +86,37 @@ def choose(outputs: Path, by: str | None, wheres: Sequence[str]) -> Choice:
         require(len(wheres) < 2, "compare", f"--by {by} and {len(wheres)} --where", "one --where "
                 "beside --by, its conditions joined by and")  # fmt: skip
     records = find_runs(outputs)
-    frame = run_frame(records).reset_index()  # a run is its place: a copy has the same key
-    if by is not None:
-        columns = list(frame.columns)
-        require(by in columns, "--by", by, f"a setting or column of the runs{near(by, columns)}")
-    where_of = _where_of(frame, wheres) if by is None else {}
-    kept = list(where_of) if by is None else list(_filtered(frame, wheres).index)
-    collected = read_trials([records[place] for place in kept])
-    used = collected.runs
-    left_out = list(collected.skipped)
+    where_of = _where_of(records, wheres)
+    kept = [run for run in records if not wheres or run.folder in where_of]
+    trials, skipped, used = read_trials(kept)
     require(bool(used), outputs, f"{len(kept)} runs of which none can be used"
-            + "".join(f"; {run}: {reason}" for run, reason in left_out[:1]),
+            + "".join(f"; {run}: {reason}" for run, reason in skipped[:1]),
             "a finished run")  # fmt: skip
     if by is None:
-        place_of = {records[place].folder: place for place in kept}
-        values: dict[str, Any] = {run.folder.name: where_of[place_of[run.folder]] for run in used}
+        values: dict[str, Any] = {run.folder.name: where_of[run.folder] for run in used}
         for where in wheres:
             require(where in values.values(), "--where", where, "a condition that a run which can "
                     "be used fulfils")  # fmt: skip
-        names = list(wheres)
+        names: list[Any] = list(wheres)
     else:
-        values = _values_of(used, frame.assign(folder=[run.folder for run in records]), by)
+        facts = {run.folder.name: _facts(run) for run in used}
+        columns = list(dict.fromkeys(name for each in facts.values() for name in each))
+        require(by in columns, "--by", by, f"a setting of the runs, or one of {', '.join(_OWN)}"
+                f"{near(by, columns)}")  # fmt: skip
+        values = {key: each.get(by) for key, each in facts.items()}
         lacking = [run for run in used if values[run.folder.name] is None]
-        left_out += [Skipped(run.name, f"has no {by}") for run in lacking]
-        used = [run for run in used if run not in lacking]
+        skipped += [Skipped(run.name, f"has no {by}") for run in lacking]
+        used = [run for run in used if values[run.folder.name] is not None]
         names = _in_order({values[run.folder.name] for run in used}, by)
         only = f"{len(used)} runs" + (f", all of {_shown(names[0], by)}" if names else "")
         require(len(names) > 1, "--by", f"{by}: {only}", "two values or more")
     tasks = sorted({run.known.task for run in used})
     require(len(tasks) == 1, "task", ", ".join(tasks), "runs of one task; choose it by --where "
             "\"task='plan'\"")  # fmt: skip
-    return _choice(tasks[0], used, collected.trials[tasks[0]], (by, values, names), left_out)
+    return _choice(used, trials[tasks[0]], (by, values, names), sorted(skipped))
 
 
 def _choice(
-    name: str,
     used: Sequence[RunRecord],
     trials: pd.DataFrame,
     groups: tuple[str | None, Mapping[str, Any], Sequence[Any]],
@@ -145,37 +144,31 @@ def _choice(
     group = keys.map(values).astype(pd.CategoricalDtype(names, ordered=True))
     group = group.cat.rename_categories([_shown(each, by) for each in names])
     versions = sorted({str(run.known.versions.get("gapath", "?")) for run in used})
-    return Choice(find_task(name), trials, group, also, beside, tuple(sorted(left_out)),
+    return Choice(find_task(used[0].known.task), trials, group, also, beside, tuple(left_out),
                   tuple(versions))  # fmt: skip
 
 
-def _filtered(frame: pd.DataFrame, wheres: Sequence[str]) -> pd.DataFrame:
+def _where_of(records: Sequence[RunRecord], wheres: Sequence[str]) -> dict[Path, str]:
+    """Give each run the condition that it fulfils, of those that fulfil one."""
+    if not wheres:
+        return {}
+    frame = run_frame(records).reset_index()  # a run is its place: a copy has the same key
+    found: dict[Path, str] = {}
     for where in wheres:
-        frame = chosen(frame, where)
-        require(len(frame) > 0, "--where", where, "a condition that a run fulfils")
-    return frame
-
-
-def _where_of(frame: pd.DataFrame, wheres: Sequence[str]) -> dict[int, str]:
-    """Give each run's place the condition that it fulfils."""
-    found: dict[int, str] = {}
-    for where in wheres:
-        for place in _filtered(frame, [where]).index:
-            other = found.setdefault(int(place), where)
+        places = chosen(frame, where).index
+        require(len(places) > 0, "--where", where, "a condition that a run fulfils")
+        for run in (records[place] for place in places):
+            other = found.setdefault(run.folder, where)
             if other is not where:
-                key = frame["key"][place]
-                raise InputError("--where", f"{key} in two groups, {other} and {where}",
+                raise InputError("--where", f"{run.name} in two groups, {other} and {where}",
                                  "a run in one group only")  # fmt: skip
     return found
 
 
-def _values_of(used: Sequence[RunRecord], frame: pd.DataFrame, by: str) -> dict[str, Any]:
-    """Give each run's value of a column; None where it has none."""
-    if by in ("method", "map"):  # names that tell different ones apart
-        return {run.folder.name: getattr(run.known, by) for run in used}
-    column = dict(zip(frame["folder"], frame[by].astype(object), strict=True))
-    values = {run.folder.name: column[run.folder] for run in used}
-    return {key: None if pd.isna(value) else value for key, value in values.items()}
+def _facts(run: RunRecord) -> dict[str, Any]:
+    """Give what may tell runs apart: as `run_frame` calls it."""
+    known = vars(run.known)
+    return {**tabular(run.settings), **{name: known[name] for name in _OWN}}
 
 
 def _in_order(values: set[Any], by: str) -> list[Any]:

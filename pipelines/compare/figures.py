@@ -1,7 +1,9 @@
 """What a comparison comes to in pictures."""
 
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Canvas
 
@@ -13,7 +15,10 @@ from gapath.pipelines.page.section import Figure
 
 _APART, _ALIKE, _BEST = "#D55E00", "#0072B2", "#009E73"
 _FEW = 20
-"""More groups than these stand closer together."""
+"""More groups than these stand side by side, not all of them with their names."""
+
+_DRAWN = ("success", "expected_evaluations", "expected_time", "cost")
+"""What is spent in a trial differs much from trial to trial: that is what ranks are for."""
 
 _RANKED = 12
 """Of more groups ranks would not be legible."""
@@ -34,14 +39,14 @@ def figures(comparisons: Sequence[Comparison], by: str, order: Sequence[str]) ->
     Returns
     -------
     list of Figure
-        For each quantity that has numbers the groups with their intervals, and how they do against
-        the best one; then mean ranks, if there are three groups or more that differ.
+        For success, the expected amounts and the cost the groups with their intervals, and how
+        they do against the best one; then mean ranks, if three groups or more differ.
     """
     with style():
         found = [
             _intervals(each, by, order)
             for each in comparisons
-            if each.best is not None and each.pairs
+            if each.pairs and each.quantity in _DRAWN
         ]
         ranked = [each for each in comparisons if _has_ranks(each)]
         return [*found, *([_ranks(ranked, by)] if ranked else [])]
@@ -51,30 +56,40 @@ def _intervals(comparison: Comparison, by: str, order: Sequence[str]) -> Figure:
     best, quantity = comparison.best, comparison.quantity
     assert best is not None
     wording = WORDINGS[quantity]
-    scale = {"%": 100, "ms": 1000}.get(wording.unit, 1)
     known = {each.group: each for each in comparison.estimates if each.value is not None}
     names = [name for name in order if name in known]
     pairs = {pair.second: pair for pair in comparison.against_best()}
-    few = len(names) <= _FEW
-    canvas = Canvas(figsize=(WIDTH, 1 + (0.24 if few else 0.14) * len(names)))
-    left, right = canvas.subplots(1, 2, sharey=True)
-    for place, name in enumerate(names):
-        color = _BEST if name == best.group else _color(pairs[name])
-        _bar(left, place, _own(known[name], scale), color)
-        if name in pairs:
-            _bar(right, place, _against(pairs[name], quantity), color)
-    left.set_yticks(range(len(names)), names, fontsize=10 if few else 7)
-    left.set_ylim(len(names) - 0.5, -0.5)
-    left.set_ylabel(by)
-    unit = f", {wording.unit}" if wording.unit else ""
-    left.set_xlabel(f"{wording.short}{unit}")
-    right.axvline(0 if quantity == "success" else 1, color="#888888", linewidth=1)
+    colors = [_BEST if name == best.group else _color(pairs[name]) for name in names]
+    scale = {"%": 100, "ms": 1000}.get(wording.unit, 1)
+    own = [_scaled(known[name][2:5], scale) for name in names]
+    against = [_against(pairs.get(name), quantity) for name in names]
+    title = f"{wording.short}, {wording.unit}".removesuffix(", ")
     behind = f"points behind {best.group}" if quantity == "success" else f"times {best.group}"
-    right.set_xlabel(behind)
+    equal = 0 if quantity == "success" else 1
+    if len(names) <= _FEW:
+        canvas = Canvas(figsize=(WIDTH, 1 + 0.24 * len(names)))
+        left, right = canvas.subplots(1, 2, sharey=True)
+        for panel, bars, text in ((left, own, title), (right, against, behind)):
+            _draw(panel.hlines, panel.scatter, bars, colors)
+            panel.set_xlabel(text)
+        right.axvline(equal, color="#888888", linewidth=1)
+        left.set_yticks(range(len(names)), names)
+        left.set_ylim(len(names) - 0.5, -0.5)
+        left.set_ylabel(by)
+    else:
+        canvas = Canvas(figsize=(WIDTH, 4.6))
+        upper, lower = canvas.subplots(2, 1, sharex=True)
+        for panel, bars, text in ((upper, own, title), (lower, against, behind)):
+            _draw(panel.vlines, _upright(panel), bars, colors)
+            panel.set_ylabel(text)
+        lower.axhline(equal, color="#888888", linewidth=1)
+        step = -(-len(names) // 8)
+        lower.set_xticks(range(0, len(names), step), names[::step], rotation=20, ha="right")
+        lower.set_xlabel(by)
     svg, png = render(canvas)
     caption = (
-        f"{wording.title}, with 95 % intervals; on the right against the best. Green: the best; "
-        "orange: told apart from it (Holm); blue: not."
+        f"{wording.title}, with 95 % intervals; then against the best. Green: the best; orange: "
+        "told apart from it (Holm); blue: not."
     )
     values = ", ".join(f"{name} {wording.value(known[name].value or 0)}" for name in names)
     return Figure(f"comparison_{quantity}", caption, f"{wording.title}: {values}", svg, png)
@@ -84,30 +99,37 @@ def _color(pair: Pair) -> str:
     return _APART if pair.apart else _ALIKE
 
 
-_Bar = tuple[float, float | None, float | None]
+_Bar = tuple[float, float, float]
+"""A value and the ends of its interval; NaN is not drawn."""
 
 
-def _own(each: Estimate, scale: float) -> _Bar:
-    low, high = (None if end is None else scale * end for end in (each.low, each.high))
-    return scale * (each.value or 0), low, high
+def _scaled(numbers: Iterable[float | None], scale: float) -> _Bar:
+    value, low, high = (math.nan if each is None else scale * each for each in numbers)
+    return value, low, high
 
 
-def _against(pair: Pair, quantity: str) -> _Bar | None:
-    mine = pair if quantity == "success" else pair.swapped()
-    found, scale = mine.difference, 100 if quantity == "success" else 1
-    if found.effect is None:
-        return None
-    low, high = (None if end is None else scale * end for end in (found.low, found.high))
-    return scale * found.effect, low, high
+def _against(pair: Pair | None, quantity: str) -> _Bar:
+    if pair is None:
+        return math.nan, math.nan, math.nan
+    found = (pair if quantity == "success" else pair.swapped()).difference
+    return _scaled((found.effect, found.low, found.high), 100 if quantity == "success" else 1)
 
 
-def _bar(panel: Axes, place: int, bar: _Bar | None, color: str) -> None:
-    if bar is None:
-        return
-    value, low, high = bar
-    if low is not None and high is not None:
-        panel.plot([low, high], [place, place], color=color, linewidth=1.4)
-    panel.plot(value, place, "o", color=color, markersize=4)
+def _draw(
+    lines: Callable[..., object],
+    points: Callable[..., object],
+    bars: Sequence[_Bar],
+    colors: Sequence[str],
+) -> None:
+    """Draw values and intervals with two calls: many artists would take long."""
+    value, low, high = np.array(bars).T
+    places = np.arange(len(bars))
+    lines(places, low, high, colors=colors, linewidth=1.4)
+    points(value, places, c=colors, s=16, zorder=3)
+
+
+def _upright(panel: Axes) -> Callable[..., object]:
+    return lambda value, places, **look: panel.scatter(places, value, **look)
 
 
 def _has_ranks(comparison: Comparison) -> bool:
@@ -167,7 +189,7 @@ def _rank_line(panel: Axes, comparison: Comparison) -> None:
         panel.text(end, level, text, ha=side, va="center", fontsize=9)
     for at, (low, high) in enumerate(bars):
         level = 0.3 + 0.35 * at
-        panel.plot([low - 0.03, high + 0.03], [level, level], color="black", linewidth=3)
+        panel.plot([low, high], [level, level], color="black", linewidth=3, solid_capstyle="butt")
     panel.set_xlim(1 - 0.35 * (k - 1), k + 0.35 * (k - 1))
     panel.set_ylim(below + 0.7 * half, -0.9)
     panel.set_axis_off()

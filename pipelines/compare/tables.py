@@ -102,7 +102,7 @@ def shown(comparison: Comparison, by: str) -> pd.DataFrame:
 
 def _heading(quantity: str) -> str:
     wording = WORDINGS[quantity]
-    return f"{wording.short}, {wording.unit}" if wording.unit else wording.short
+    return f"{wording.short}, {wording.unit}".removesuffix(", ")
 
 
 def _own(each: Estimate, quantity: str) -> tuple[str, str]:
