@@ -88,9 +88,9 @@ class Drive(Shown):
         known = np.full(self.problem.map.weights.shape, np.nan)
         for x, y in (self.problem.start, self.problem.target):  # known from the start
             known[y, x] = self.problem.map.weights[y, x]
-        for seen in self._steps[: step + 1]:
-            x, y = seen.fields.T
-            known[y, x] = np.where(seen.entries >= OBSTACLE, 1.0, seen.entries / SCALE)
+        fields, weights, ends = self._seen
+        x, y = fields[: ends[step]].T
+        known[y, x] = weights[: ends[step]]  # of one that is there twice the last counts
         return known
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
@@ -137,6 +137,14 @@ class Drive(Shown):
     @cached_property
     def _steps(self) -> list[Stepped]:
         return [event for event in self.events if isinstance(event, Stepped)]
+
+    @cached_property
+    def _seen(self) -> tuple[NDArray[np.int32], NDArray[np.float64], NDArray[np.int64]]:
+        """(f, 2) fields that it saw, (f,) their weights, (n + 1,) how many up to each step."""
+        fields = np.concatenate([step.fields for step in self._steps])
+        entries = np.concatenate([step.entries for step in self._steps])
+        weights = np.where(entries >= OBSTACLE, 1.0, entries / SCALE)
+        return fields, weights, np.cumsum([len(step.fields) for step in self._steps])
 
     @cached_property
     def _paths(self) -> list[NDArray[np.int32]]:
