@@ -38,9 +38,8 @@ def trials(**columns):
     defaults = {
         "experiment": "mine", "map": "kg18_test1", "map_source": "reconstructed",
         "map_instance": 0, "start": "(1, 6)", "target": "(22, 6)", "planner": "ga1",
-        "feasible": True, **METRICS,
+        "feasible": True, "key": "a", **METRICS,
     }  # fmt: skip
-    defaults["key"] = [f"run {i}" for i in range(len(frame))]
     return frame.assign(**{k: v for k, v in defaults.items() if k not in frame})
 
 
@@ -59,7 +58,7 @@ def test_metrics_worked_by_hand():
     assert [row[f"turns_{key}"] for key in ("q1", "median", "q3")] == [2, 4, 8]
     assert [row[f"length_{key}"] for key in ("q1", "median", "q3")] == [20, 30, 40]
     (shown,) = made_table.shown.to_dict("records")
-    assert list(shown) == ["Experiment", "Map", "Planner", "Instances", "Trials", "Feasible"] + [
+    assert list(shown) == ["Experiment", "Map", "Planner", "Problems", "Trials", "Feasible"] + [
         load("metric", name).TITLE for name in metrics()
     ]
     assert list(shown.values())[:6] == ["mine", "Map 1 (reconstructed)", "GA 1", "1", "6", "5"]
