@@ -51,14 +51,18 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> list[Section]:
     list of Section
         One for each sweep in it, found from what varies, and one for what is in none.
     """
+    views = views_of(trials, runs)
+    named = titles(views, trials["experiment"].iloc[0])
+    return [_section(*each) for each in zip(views, named, strict=True)]
+
+
+def views_of(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> list[View]:
+    """Find the sweeps of an experiment, and what their trials come to."""
     task = find_task(runs[0].known.task)
-    experiment, choice, measures = trials["experiment"].iloc[0], task.groups[0], measures_of(task)
-    cases = cases_of(runs)
+    choice, measures, cases = task.groups[0], measures_of(task), cases_of(runs)
     cells = summarise_cells(trials, cases, measures)
-    sweeps = find_sweeps(cases, choice)
-    stem = f"sweep_{task.name}_{experiment}"
-    views = [view_of(sweep, cells, measures, stem) for sweep in sweeps]
-    return [_section(*each) for each in zip(views, titles(views, experiment), strict=True)]
+    stem = f"sweep_{task.name}_{trials['experiment'].iloc[0]}"
+    return [view_of(sweep, cells, measures, stem) for sweep in find_sweeps(cases, choice)]
 
 
 def _section(view: View, title: str) -> Section:

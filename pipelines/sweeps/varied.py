@@ -227,7 +227,7 @@ def _grids(
     """
     found: dict[tuple[tuple[str, ...], int], list[_Grid]] = defaultdict(list)
     for _, mine in settings.groupby(presets, sort=True):
-        every = [name for name in mine if not _same(mine[name])]
+        every = [name for name in sorted(mine) if not _same(mine[name])]
         together = changed_together(mine[every])
         varied = [name for name in every if name not in together]
         seen: Counter[tuple[str, ...]] = Counter()

@@ -49,7 +49,7 @@ def _figure(view: View, quantity: Quantity) -> Figure:
     # The longer one runs to the right, as numbers do in a table.
     across, down = sorted(view.sweep.settings, key=lambda factor: -len(factor.levels))
     parts = list(view.series())[:PANELS]
-    tables = [(name, _table(rows, quantity, across, down)) for name, rows in parts]
+    tables = [(name, values_of(rows, quantity, across, down)) for name, rows in parts]
     norm = _norm(tables, quantity)
     colors = matplotlib.colormaps["viridis" if quantity.name == "success" else "viridis_r"]
     with style():
@@ -85,7 +85,7 @@ def _figure(view: View, quantity: Quantity) -> Figure:
     )
 
 
-def _table(rows: pd.DataFrame, quantity: Quantity, across: Factor, down: Factor) -> Cells:
+def values_of(rows: pd.DataFrame, quantity: Quantity, across: Factor, down: Factor) -> Cells:
     """Give a value for each pair: NaN where it was not tried, infinity where none succeeded."""
     table = np.full((len(down.levels), len(across.levels)), np.nan)
     place = [{repr(level): i for i, level in enumerate(f.levels)} for f in (down, across)]
@@ -161,7 +161,9 @@ def _caption(
         parts[0] += ", if a failed trial is tried again until one succeeds"
     missing = sum(int(np.isnan(table).sum()) for _, table in tables)
     if missing:
-        parts.append(f"{missing} combinations were not tried and are hatched")
+        were = "combination was not tried and is" if missing == 1 else (
+            "combinations were not tried and are")  # fmt: skip
+        parts.append(f"{missing} {were} hatched")
     never = sum(int(np.isposinf(table).sum()) for _, table in tables)
     if never:
         parts.append(f"in {never} no trial succeeded: {number(np.inf)}, dark grey")

@@ -55,12 +55,12 @@ def test_noise_cannot_be_told(cells, seed):
 
 def test_a_null_setting_is_seldom_told_from_none():
     told = 0
-    for seed in range(10):
+    for seed in range(6):
         cells = pd.DataFrame(list(product(*LEVELS.values())), columns=list(LEVELS))
         result = 10.0 * pd.factorize(cells["a"])[0] + noise(cells, seed)
         weights = importance(cells, factors_of(cells), result).weights
         told += sum(weight.told for weight in weights if weight.name != "a")
-    assert told <= 4  # of 20
+    assert told <= 3  # of 12
 
 
 @pytest.mark.parametrize(
