@@ -14,7 +14,7 @@ from scipy import stats
 from gapath.pipelines.numbers.comparison import QUANTITIES, compare
 from gapath.pipelines.numbers.expected import expected
 from gapath.pipelines.numbers.groups import Groups, side_by_side
-from gapath.pipelines.numbers.statistics import expected_running_time, median_interval
+from gapath.pipelines.numbers.statistics import expected_running_time
 
 DEMSAR = """
 0.763 0.768 0.771 0.798
@@ -206,14 +206,6 @@ def test_expected_amounts_are_no_different_19_times_in_20_where_nothing_differs(
         (found,) = expected(spent, success).differences([(0, 1)], [True])
         apart += found.p < 0.05
     assert apart <= 11
-
-
-@given(st.lists(st.floats(-1e3, 1e3), min_size=2, max_size=30), st.integers(0, 5))
-def test_median_intervals_are_those_of_resampled_values(values, seed):
-    sample = np.sort(values)
-    random = np.random.Generator(np.random.SFC64(seed))
-    medians = np.median(sample[random.integers(len(values), size=(1000, len(values)))], axis=1)
-    assert median_interval(values, seed) == pytest.approx(np.quantile(medians, (0.025, 0.975)))
 
 
 def test_blocks_are_problems_seeds_and_numbers_whatever_stands_beside():

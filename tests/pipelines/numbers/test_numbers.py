@@ -1,14 +1,16 @@
+import itertools
 import math
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.stats import binomtest
+from scipy.stats import binom, binomtest
 
 from gapath.pipelines.numbers.statistics import (
     expected_running_time,
     median_interval,
+    median_intervals,
     share_within,
     wilson,
 )
@@ -32,21 +34,57 @@ def test_wilson_is_exact_at_its_ends_and_knows_nothing_of_nothing():
     assert wilson(0.5, 0) == (0.0, 1.0)
 
 
-@given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=40), st.integers(0, 100))
-def test_median_interval_lies_within_the_sample_whatever_its_order(values, seed):
-    low, high = median_interval(values, seed)
+@given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=200))
+def test_median_interval_lies_within_the_sample_whatever_its_order(values):
+    low, high = median_interval(values)
     assert min(values) <= low <= high <= max(values)
-    assert median_interval(values[::-1], seed) == (low, high)
+    assert median_interval(values[::-1]) == (low, high)
 
 
 def test_median_interval_of_edge_cases():
     assert median_interval([3.0, 3.0]) == (3.0, 3.0)
+    assert median_interval([1.0]) == (1.0, 1.0)
     assert all(math.isnan(end) for end in median_interval([]))
+
+
+@given(st.lists(st.integers(0, 30), min_size=1, max_size=6))
+def test_median_interval_is_that_of_all_resamples(values):
+    """Slow twin: every resample there is, each with the same chance."""
+    medians = sorted(np.median(each) for each in itertools.product(values, repeat=len(values)))
+    ends = [medians[math.ceil(level * len(medians)) - 1] for level in (0.025, 0.975)]
+    assert median_interval(values) == pytest.approx(ends)
+
+
+@pytest.mark.parametrize("n", [25, 26, 101, 102, 500, 1001])
+def test_median_interval_is_the_limit_of_resampling(n):
+    """Slow twin: many resamples; so many of their medians lie below and above the ends."""
+    random = np.random.default_rng(n)
+    sample = random.exponential(size=n)
+    medians = np.array([np.median(random.choice(sample, n)) for _ in range(20_000)])
+    for end, level in zip(median_interval(sample), (0.025, 0.975), strict=True):
+        assert np.mean(medians < end) < level + 0.004
+        assert np.mean(medians <= end) > level - 0.004
+
+
+def test_median_interval_of_textbook_sizes():
+    """The m-th of n = 2 m - 1 draws is among the first i if a coin of i / n says so m times."""
+    for n in (5, 9, 51, 999):
+        m = n // 2 + 1
+        low, high = median_interval(range(1, n + 1))
+        for end, level in ((low, 0.025), (high, 0.975)):
+            assert binom.sf(m - 1, n, (end - 1) / n) < level <= binom.sf(m - 1, n, end / n)
+
+
+@given(st.integers(1, 60), st.integers(1, 8), st.integers(0, 9))
+def test_samples_of_one_size_are_done_at_once(n, count, seed):
+    samples = np.sort(np.random.default_rng(seed).integers(0, 20, (count, n)).astype(float))
+    together = np.stack(median_intervals(samples), axis=1).tolist()
+    assert together == [list(median_interval(sample)) for sample in samples]
 
 
 def test_median_interval_covers_the_median_about_19_times_in_20():
     random = np.random.default_rng(1)
-    intervals = [median_interval(random.exponential(size=60), seed) for seed in range(200)]
+    intervals = [median_interval(random.exponential(size=60)) for _ in range(200)]
     covered = sum(low <= math.log(2) <= high for low, high in intervals)
     assert 180 <= covered <= 199
 
