@@ -102,6 +102,8 @@ def refusal(error: Exception, text: str, columns: Collection[str], where: str) -
     unknown = _UNKNOWN.search(message)
     if unknown:
         name = unknown.group(1)
+        dotted = re.search(rf"\b{re.escape(name)}(\.\w+)+", text)  # SQL took it for a table's
+        name = dotted.group() if dotted else name
         hint = near(name, columns)
         if f'"{name}"' in text:
             hint = f"{hint}; text stands in single quotes: '{name}'"
