@@ -2,11 +2,12 @@
 
 import math
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,15 @@ class Results:
         return cls(
             len(succeeded),
             int(np.count_nonzero(succeeded)),
-            {name: math.fsum(column.tolist()) for name, column in known.items()},
+            {name: exact_sum(column) for name, column in known.items()},
             {name: len(known[name]) for name in known if len(known[name]) < len(succeeded)},
         )
+
+
+def exact_sum(column: NDArray[np.float64]) -> float:
+    """Add numbers and round once; infinite or NaN where there is no finite sum."""
+    if np.isfinite(column).all():
+        with suppress(OverflowError):
+            return math.fsum(column.tolist())
+    with np.errstate(invalid="ignore", over="ignore"):
+        return float(column.sum())

@@ -19,6 +19,9 @@ Value: TypeAlias = str | int | float | bool | None
 Flat: TypeAlias = Mapping[str, Value]
 
 _OF_LIST = re.compile(r"([^[]+)\[")
+_UNEVEN = re.compile(r"\[|\.$", re.MULTILINE)
+"""In names of settings that are no columns' names: of lists, or of an empty mapping."""
+
 _STEP = re.compile(r"\[(\d*)\]|\.?([^.\[\]]+)|\.$")
 
 
@@ -120,6 +123,8 @@ def tabular(settings: Flat) -> dict[str, Value]:
     dict of str to str, int, float, bool or None
         For example ``map.start``: "[0, 0]" instead of ``map.start[0]`` and ``map.start[1]``.
     """
+    if not _UNEVEN.search("\n".join(settings)):
+        return dict(settings)
     found: dict[str, Value] = {}
     lists: dict[str, dict[str, Value]] = {}
     for name, value in settings.items():

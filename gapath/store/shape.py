@@ -39,8 +39,8 @@ def shaped(kind: Any, content: Any, where: str) -> Any:
             raise InputError(where, content, right)
         return content
     require(isinstance(content, dict), where, content, "a mapping")
-    if get_origin(hint.shape) is Mapping:
-        inner = hint.parts[_ITEMS]
+    inner = hint.parts.get(_ITEMS)
+    if inner is not None:
         if inner.shape is None and set(map(type, content.values())).issubset(inner.plain):
             return content
         return {n: shaped(inner.kind, item, f"{where}, {n}") for n, item in content.items()}
@@ -52,7 +52,7 @@ def shaped(kind: Any, content: Any, where: str) -> Any:
     return hint.shape(**made)
 
 
-_ITEMS = "items"
+_ITEMS = ""
 
 
 class _Hint(NamedTuple):

@@ -138,7 +138,8 @@ def _group(given: argparse.Namespace, rows: pd.DataFrame, by: int) -> None:
         rows = rows[_columns("--columns", given.columns, rows)]
     elif not (given.json or given.csv):
         wanted = [*list(rows)[:by], *FIGURES, *(name for name in METRICS if name not in SPENT)]
-        rows = rows[[name for name in rows if name in wanted]].dropna(axis="columns", how="all")
+        rows = rows[[name for name in rows if name in wanted]]
+        rows = rows.loc[:, rows.notna().any() | rows.empty]
     _write(given, Answer.of(rows), {name: -i for i, name in enumerate(METRICS)})
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from gapath.pipelines.numbers.statistics import wilson
-from gapath.store.results import Results
+from gapath.store.results import Results, exact_sum
 
 EVALUATIONS = "evaluations"
 SECONDS = ("plan_time_s", "compute_time_s")
@@ -48,10 +48,13 @@ def grouped(frame: pd.DataFrame, came: Sequence[Results], by: Sequence[str]) -> 
     trials = np.array([each.trials for each in came])
     succeeded = np.array([each.succeeded for each in came])
     sums = {name: np.array([each.sums.get(name, 0.0) for each in came]) for name in names}
-    counts = {name: np.array([_count(each, name) for each in came]) for name in names}
+    counts = {name: trials * [name in each.sums for each in came] for name in names}
+    for i, each in enumerate(came):
+        for name, defined in each.counts.items():
+            counts[name][i] = defined
     rows = []
     for group in groups:
-        total = {name: math.fsum(sums[name][group]) for name in names}
+        total = {name: exact_sum(sums[name][group]) for name in names}
         count = {name: int(counts[name][group].sum()) for name in names}
         figures = _figures(int(trials[group].sum()), int(succeeded[group].sum()), total, count)
         means = {name: total[name] / count[name] for name in names if count[name]}
@@ -59,11 +62,6 @@ def grouped(frame: pd.DataFrame, came: Sequence[Results], by: Sequence[str]) -> 
     keys = frame[list(by)].iloc[[group[0] for group in groups]].reset_index(drop=True)
     columns = dict.fromkeys([*FIGURES, *names])
     return keys.join(pd.DataFrame(rows, columns=[name for name in columns if name not in by]))
-
-
-def _count(came: Results, name: str) -> int:
-    """Tell in how many trials of a run a column is defined."""
-    return came.counts.get(name, came.trials) if name in came.sums else 0
 
 
 def _figures(
@@ -77,6 +75,6 @@ def _figures(
     for name, columns in spent.items():
         known = [column for column in columns if count.get(column)]
         if known:
-            effort = math.fsum(total[column] for column in known)
+            effort = sum(total[column] for column in known)
             figures[name] = effort / succeeded if succeeded else math.inf
     return figures

@@ -4,6 +4,7 @@ import math
 from fractions import Fraction
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -21,3 +22,18 @@ def test_sums_are_those_of_fractions_rounded_once(trials):
     assert found.sums["cost"] == float(sum(map(Fraction, known)))
     assert found.sums["epochs"] == float(sum(row[2] for row in trials))
     assert found.counts == ({"cost": len(known)} if len(known) < len(trials) else {})
+
+
+@pytest.mark.parametrize(
+    ("values", "total"),
+    [
+        ([1.0, math.inf], math.inf),
+        ([math.inf, -math.inf], math.nan),
+        ([1e308, 1e308], math.inf),
+        ([], 0.0),
+        ([math.nan], 0.0),
+    ],
+)
+def test_what_has_no_finite_sum_ends_no_run(values, total):
+    found = Results.of(np.ones(len(values)), {"cost": values}).sums["cost"]
+    assert found == total or (math.isnan(found) and math.isnan(total))

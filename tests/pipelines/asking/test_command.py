@@ -155,8 +155,9 @@ def test_no_folder_and_no_runs_are_one_line(ask, tmp_path):
 def test_no_run_fulfils_it(ask):
     assert ask("--where", "map = 'elsewhere'")[::2] == (0, "no such runs\n")
     for words in (["--group", "map"], ["--sql", "select count(*) as n from trials"]):
-        code, out, said = ask("--where", "map = 'elsewhere'", *words, "--csv")
-        assert (code, said) == (0, "no such runs\n") and len(out.splitlines()) <= 2
+        for form in ([], ["--csv"], ["--json"]):
+            code, out, said = ask("--where", "map = 'elsewhere'", *words, *form)
+            assert (code, said) == (0, "no such runs\n") and len(out.splitlines()) <= 5
 
 
 def test_runs_that_cannot_be_used_are_listed_with_the_reason(ask, tmp_path, outputs):
