@@ -30,6 +30,7 @@ _PLACES = (
     "kg18.sweep",
     "kg18.logging",
     "kg18.drives",
+    "asking",
     "cold_start",
 )
 

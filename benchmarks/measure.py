@@ -4,6 +4,8 @@ import os
 import platform
 import random
 import statistics
+import subprocess
+import sys
 import sysconfig
 import time
 from collections.abc import Callable, Sequence
@@ -24,8 +26,10 @@ from gapath.problem import Problem
 
 MAPS = ("kg18_test1", "kg18_test2", "kg18_test3", "kg18_test4")
 SETTINGS = ("ga1", "ga2", "ga3")
-COMMAND = str(Path(sysconfig.get_path("scripts")) / "gapath")
-"""The command of this environment."""
+COMMAND, REPORT = (
+    str(Path(sysconfig.get_path("scripts")) / name) for name in ("gapath", "gapath-report")
+)
+"""The commands of this environment."""
 
 PACKAGES = ("gapath", "numba", "numpy", "scipy", "scikit-image")
 
@@ -55,6 +59,33 @@ def quartiles(sample: Sequence[float]) -> Quartiles:
 def ratios(above: Sequence[float], below: Sequence[float]) -> Quartiles:
     """Summarise the ratios of times that were measured side by side."""
     return quartiles([a / b for a, b in zip(above, below, strict=True)])
+
+
+class Spent(NamedTuple):
+    """What a process spent: seconds on all cores, and the most memory that it held at once."""
+
+    cpu_s: float
+    peak_bytes: int
+
+
+def spent(command: Sequence[str]) -> Spent:
+    """Run a process to its end, its output thrown away; one that fails raises.
+
+    It is the child of a small process: the system counts as a child's memory what its parent held
+    when it was started.
+    """
+    run = [sys.executable, "-c", _IN_A_CHILD, *command]
+    done = subprocess.run(run, check=True, capture_output=True, text=True)
+    cpu, kilobytes = done.stdout.split()
+    return Spent(float(cpu), 1024 * int(kilobytes))
+
+
+_IN_A_CHILD = """
+import resource, subprocess, sys
+subprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL)
+used = resource.getrusage(resource.RUSAGE_CHILDREN)
+print(used.ru_utime + used.ru_stime, used.ru_maxrss)
+"""
 
 
 def timed(call: Callable[[], Any]) -> tuple[float, Any]:
