@@ -4,7 +4,7 @@ import pandas as pd
 from matplotlib.ticker import NullFormatter
 
 from gapath.pipelines.numbers.text import number, percent
-from gapath.pipelines.page.figures import legend, looks, panels, render, style
+from gapath.pipelines.page.figures import PAPER, legend, looks, panels, render, style
 from gapath.pipelines.page.section import Figure
 from gapath.pipelines.papers.names import label, rank
 
@@ -45,7 +45,7 @@ def figure(rows: pd.DataFrame) -> Figure:
                 panel.fill_between(fields, mine["GA us q1"], mine["GA us q3"], color=color,
                                    alpha=0.2, linewidth=0)  # fmt: skip
                 panel.scatter(fields, mine["GA us"], s=18, edgecolor=color, zorder=3,
-                              facecolor=[color if each else "white" for each in found])  # fmt: skip
+                              facecolor=[color if each else PAPER for each in found])  # fmt: skip
                 sentences.append(
                     f"{label(name)}, {label(planner)}: {number(mine['GA us'].iloc[0])} to "
                     f"{number(mine['GA us'].iloc[-1])} us, found {percent(mine['found'].iloc[-1])} "

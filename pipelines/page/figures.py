@@ -1,6 +1,7 @@
 """How every figure looks, and how it becomes the same bytes each time."""
 
 import io
+import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any, NamedTuple
@@ -18,15 +19,25 @@ from gapath.pipelines.papers.names import label, rank
 WIDTH = 4.6
 """Width of every figure, inches: shrunk to a phone's width its 10 pt stay legible."""
 
+INK, PAPER, GRID = "#000001", "#fffffe", "#e6e6e6"
+"""Black, white and grey that a page shows in its own colours: what is drawn in other ones, also in
+plain black and white, looks the same on every page."""
+
 _STYLE = {
-    "figure.facecolor": "white",
+    "figure.facecolor": PAPER,
+    "axes.facecolor": PAPER,
+    "text.color": INK,
+    "axes.edgecolor": INK,
+    "axes.labelcolor": INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
     "font.family": "DejaVu Sans",
     "font.size": 10,
     "axes.titlesize": 10,
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.grid": True,
-    "grid.color": "#e6e6e6",
+    "grid.color": GRID,
     "axes.axisbelow": True,
     "legend.frameon": False,
     "lines.linewidth": 1.8,
@@ -47,7 +58,7 @@ _LOOKS = (
     Look("#D55E00", (0, (5, 1.5))),
     Look("#009E73", (0, (1.5, 1))),
     Look("#CC79A7", (0, (6, 1.5, 1.5, 1.5))),
-    Look("#000000", (0, (3, 3))),
+    Look(INK, (0, (3, 3))),
     Look("#56B4E9", (0, (8, 2))),
     Look("#E69F00", (0, (4, 1, 1, 1, 1, 1))),
 )
@@ -159,3 +170,42 @@ def render(canvas: Canvas) -> tuple[bytes, bytes]:
         canvas.savefig(stream, format=kind, dpi=200, metadata=metadata, bbox_inches="tight")
         files.append(stream.getvalue())
     return files[0], files[1]
+
+
+_SCHEME = (
+    f"svg{{--i:{INK};--p:none;--g:{GRID}}}"
+    "@media(prefers-color-scheme:dark){svg{--i:#e4e7eb;--g:#3a424d}}"
+)
+_SHORTER = (
+    (re.compile(r"<\?xml.*?<svg", re.DOTALL), "<svg"),
+    (re.compile(r"<metadata>.*?</metadata>|<!--.*?-->", re.DOTALL), ""),
+    (re.compile(r"\s+"), " "),
+)
+_LINE, _DIGITS = re.compile(r' d="[^"]*"'), re.compile(r"(\.\d\d)\d+")
+"""Of a line a hundredth of a point is enough, 7200 of which are an inch."""
+
+
+def picture_of(svg: bytes) -> str:
+    """Write a figure as the address of an image, for a page in light or dark colours.
+
+    Parameters
+    ----------
+    svg : bytes
+        As `render` gives it: on white.
+
+    Returns
+    -------
+    str
+        A data URI to stand between double quotes: on what is behind it, its ink and grid as the
+        page's scheme wants them.
+    """
+    text = svg.decode()
+    for pattern, shorter in _SHORTER:
+        text = pattern.sub(shorter, text)
+    text = _LINE.sub(lambda line: _DIGITS.sub(r"\1", line[0]), text)
+    for color, name in ((INK, "i"), (PAPER, "p"), (GRID, "g")):
+        text = text.replace(color, f"var(--{name})")
+    text = text.replace("</style>", f"{_SCHEME}</style>", 1)
+    for plain, escaped in (("%", "%25"), ("#", "%23"), ("'", "%27"), ('"', "'"), ("&", "&amp;")):
+        text = text.replace(plain, escaped)
+    return f"data:image/svg+xml,{text}"

@@ -1,13 +1,17 @@
 """A page of the report: sections and the files that belong to them."""
 
 import base64
-from collections.abc import Iterator
+import hashlib
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader
+from jinja2 import Environment, FileSystemLoader, Template
 
+from gapath.pipelines.page.figures import picture_of
+from gapath.pipelines.page.rows import rows_of, width_of
 from gapath.pipelines.page.section import Section
 
 _HERE = Path(__file__).parent
@@ -25,20 +29,53 @@ class Part:
         Its content.
     commands : list of str
         What to type to make them.
+    group : str
+        Under which heading the menu has it.
     """
 
     anchor: str
     section: Section
     commands: list[str]
+    group: str = ""
 
 
-def render(template: str, **content: Any) -> str:
-    """Render a page: one file that asks nothing of a network.
+def style() -> str:
+    """Give the style sheet of all pages."""
+    return (_HERE / "templates" / "page.css").read_text(encoding="utf-8")
+
+
+def script() -> str:
+    """Give the script of all pages, and the library that it needs."""
+    library = (_HERE / "vendor" / "dataTables.min.js").read_text(encoding="utf-8")
+    own = (_HERE / "templates" / "page.js").read_text(encoding="utf-8")
+    return f"\n{library}\n{own}"
+
+
+@cache
+def template(name: str) -> Template:
+    """Compile a template of this folder."""
+    environment = Environment(
+        loader=FileSystemLoader(_HERE / "templates"),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.globals.update(rows_of=rows_of, width_of=width_of, picture_of=picture_of)
+    return environment.get_template(name)
+
+
+def render(
+    name: str, page_of: Callable[[tuple[str, ...]], str] = lambda keys: "", **content: Any
+) -> str:
+    """Render a page: one file that asks nothing of a network, which its policy forbids, too.
 
     Parameters
     ----------
-    template : str
-        A file of this folder.
+    name : str
+        A template of this folder.
+    page_of : callable
+        Gives the address of the page of runs, by their keys.
     content
         What it shows.
 
@@ -47,16 +84,11 @@ def render(template: str, **content: Any) -> str:
     str
         HTML.
     """
-    environment = Environment(
-        loader=FileSystemLoader(_HERE),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
+    code = script()
+    digest = base64.b64encode(hashlib.sha256(code.encode()).digest()).decode()
+    return template(name).render(
+        css=style(), script=code, script_hash=digest, page_of=page_of, **content
     )
-    environment.filters["base64"] = lambda data: base64.b64encode(data).decode()
-    css = (_HERE / "report.css").read_text(encoding="utf-8")
-    return environment.get_template(template).render(css=css, **content)
 
 
 def files_of(section: Section) -> Iterator[tuple[str, bytes]]:

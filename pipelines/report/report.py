@@ -2,7 +2,8 @@
 
 import os
 import platform
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from types import ModuleType
@@ -17,8 +18,14 @@ from gapath.pipelines.reading.collect import Skipped, read_trials
 from gapath.pipelines.report.bench import make_bench_page
 from gapath.pipelines.report.command import as_sweeps
 from gapath.pipelines.report.machine import processor
+from gapath.pipelines.report.run_pages import Addresses, write_run_pages
 from gapath.store.durable import write_whole
 from gapath.store.records import RunRecord, find_runs
+
+_PAPERS = {"kg18": "KG18", "s04": "S04", "m22": "M22"}
+"""Rooms of `pipelines`, and what the menu calls them."""
+
+_OTHERS = "Any experiment"
 
 
 def make_report(outputs: Path, folder: Path) -> tuple[list[Path], list[Skipped]]:
@@ -34,7 +41,8 @@ def make_report(outputs: Path, folder: Path) -> tuple[list[Path], list[Skipped]]
     Returns
     -------
     files : list of Path
-        What was written, the page ``index.html`` last; ``bench.html`` where there are no runs.
+        What was written, pages of runs included, the page ``index.html`` last; ``bench.html``
+        where there are no runs.
     skipped : list of Skipped
         The runs that were left out, and why.
 
@@ -44,8 +52,9 @@ def make_report(outputs: Path, folder: Path) -> tuple[list[Path], list[Skipped]]
         If there is no such folder, or neither a run nor benchmarks in it that can be used.
     """
     files, skipped = make_bench_page(outputs / "bench")
+    beside: Callable[[Path], list[Path]] | None = None
     try:
-        more, skipped = _runs_page(outputs, bool(files), skipped)
+        more, beside, skipped = _runs_page(outputs, bool(files), skipped)
         files += more
     except InputError as error:
         if not files:
@@ -53,17 +62,21 @@ def make_report(outputs: Path, folder: Path) -> tuple[list[Path], list[Skipped]]
         skipped.append(Skipped("runs", str(error)))
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        written = beside(folder) if beside else []
         for name, content in files:
             write_whole(folder / name, content)
     except OSError as error:
         raise InputError(folder, error.strerror, "a folder that can be written") from error
-    return [folder / name for name, _ in files], skipped
+    return [*written, *(folder / name for name, _ in files)], skipped
 
 
 def _runs_page(
     outputs: Path, bench: bool, skipped: list[Skipped]
-) -> tuple[list[tuple[str, bytes]], list[Skipped]]:
-    """Make the page of the runs, with a link to the benchmarks' and what was left out of that."""
+) -> tuple[list[tuple[str, bytes]], Callable[[Path], list[Path]], list[Skipped]]:
+    """Make the page of the runs, with a link to the benchmarks' and what was left out of that.
+
+    What writes the pages of single runs beside it is given, too.
+    """
     runs = find_runs(outputs)
     trials, unusable, used = read_trials(runs)
     count = sum(map(len, trials.values()))
@@ -80,9 +93,12 @@ def _runs_page(
                 more = _parts(module, place, mine, used)
                 parts += more
                 skipped += [Skipped(*entry) for part in more for entry in part.section.skipped]
+    parts.sort(key=lambda part: [*_PAPERS.values(), _OTHERS].index(part.group))
     skipped = list(dict.fromkeys(skipped))  # two figures may read the same log
+    addresses = Addresses()
     page = render(
         "report.html.j2",
+        page_of=addresses.of,
         parts=parts,
         bench=bench,
         trials=count,
@@ -94,7 +110,8 @@ def _runs_page(
         made=max(run.date for run in used)[:16].replace("T", " "),
     )
     files = [file for part in parts for file in files_of(part.section)]
-    return [*files, ("index.html", page.encode())], skipped
+    beside = partial(write_run_pages, runs=used, trials=trials, lists=addresses.lists)
+    return [*files, ("index.html", page.encode())], beside, skipped
 
 
 def _wanted(
@@ -127,7 +144,8 @@ def _parts(
     for i, section in enumerate(made if isinstance(made, list) else [made]):
         mine = [run for run in runs if not section.runs or run.folder.name in section.runs]
         commands = as_sweeps(run.known.command for run in mine)
-        parts.append(Part(f"{anchor}-{i + 1}" if i else anchor, section, commands))
+        place = f"{anchor}-{i + 1}" if i else anchor
+        parts.append(Part(place, section, commands, _group(module)))
     return parts
 
 
@@ -136,6 +154,12 @@ def _anchor(module: ModuleType, task: str) -> str:
     path = module.__name__.removeprefix("gapath.pipelines.")
     words = path.replace("_", ".").split(".")
     return "-".join([*words, task] if module.TASK == ALL else words)
+
+
+def _group(module: ModuleType) -> str:
+    """Tell under which heading the menu has a section: its paper's, or that of all others."""
+    room = module.__name__.removeprefix("gapath.pipelines.").partition(".")[0]
+    return _PAPERS.get(room, _OTHERS)
 
 
 def _versions(runs: Sequence[RunRecord]) -> list[tuple[str, str]]:

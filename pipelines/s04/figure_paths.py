@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from gapath.events import Evolved, RunStarted
 from gapath.kernels.raster import polyline
 from gapath.pictures.board import draw_map, mark_ends
-from gapath.pipelines.page.figures import Look, looks, panels, render, style
+from gapath.pipelines.page.figures import INK, Look, looks, panels, render, style
 from gapath.pipelines.page.section import DRAWN, Figure, Section
 from gapath.pipelines.papers.names import label, rank
 from gapath.pipelines.reading.logs import events_of, read_logs, run_start
@@ -149,7 +149,7 @@ def _figure(
             Line2D([], [], color=color, linestyle=dashes, label=label(planner))
             for planner, (color, dashes) in look.items()
         ]
-        handles.append(Line2D([], [], color="black", marker="x", linestyle="", label="collision"))
+        handles.append(Line2D([], [], color=INK, marker="x", linestyle="", label="collision"))
         canvas.legend(handles=handles, loc="outside lower center", ncols=2)
         svg, png = render(canvas)
     return Figure(

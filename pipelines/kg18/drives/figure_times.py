@@ -7,7 +7,7 @@ import pandas as pd
 
 from gapath.pipelines.numbers.drive_summary import OUTCOMES
 from gapath.pipelines.numbers.text import number, span
-from gapath.pipelines.page.figures import panels, render, style
+from gapath.pipelines.page.figures import INK, panels, render, style
 from gapath.pipelines.page.section import Figure, Section
 from gapath.pipelines.papers.kg18 import DRIVE_SECONDS, UNKNOWN_MAPS
 from gapath.pipelines.papers.names import label, rank
@@ -19,7 +19,7 @@ ORDER = 61
 
 _NAVIGATOR = "kg18"
 _BINS = 20
-_COLORS = dict(zip(OUTCOMES, ("#0072B2", "#D55E00", "#000000"), strict=True))
+_COLORS = dict(zip(OUTCOMES, ("#0072B2", "#D55E00", INK), strict=True))
 
 
 def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
@@ -76,8 +76,8 @@ def _figure(trials: pd.DataFrame) -> Figure:
     return Figure(
         "drive_times",
         "Computing time of KG18's drives, as in its Figs 17, 19, 21 and 23; orange: drives that "
-        "returned to the start, black: overran. Each panel has axes of its own. Of the paper's "
-        f"axes survive: {paper}.",
+        "returned to the start, the colour of this text: overran. Each panel has axes of its own. "
+        f"Of the paper's axes survive: {paper}.",
         "Histograms of computing time, one panel a map. " + " ".join(sentences),
         svg,
         png,

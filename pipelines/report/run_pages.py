@@ -1,0 +1,267 @@
+"""A small page for each run, and lists of runs, beside the report."""
+
+import hashlib
+import os
+import shlex
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from urllib.parse import quote
+
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+import pyarrow.csv
+
+from gapath.pipelines.numbers.text import number, percent
+from gapath.pipelines.page.page import script, style, template
+from gapath.pipelines.page.section import Table
+from gapath.pipelines.papers.names import label
+from gapath.pipelines.reading.listing import size_text
+from gapath.pipelines.reading.logs import has_log
+from gapath.pipelines.report.stills import MOST_BYTES, MOST_RUNS, newest_logs, stills_of
+from gapath.recorders.mcap import FILE
+from gapath.store.durable import write_whole
+from gapath.store.records import MANIFEST, STATUS, RunRecord
+from gapath.task import columns, find_task
+
+FOLDER = "runs"
+"""Of the report, in which the pages are."""
+
+MOST_TRIALS = 200
+"""Trials that the page of a run shows."""
+
+_MOST_FILES = 30
+_MARK = b'<meta name="generator" content="gapath-report">'
+
+
+@dataclass
+class Addresses:
+    """Where rows of tables lead to, and which lists of runs there must be for that."""
+
+    lists: dict[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def of(self, keys: tuple[str, ...]) -> str:
+        """Give the address, from the report, of the page of a run, or of a list of several."""
+        if len(keys) == 1:
+            return f"{FOLDER}/{_file(keys[0])}"
+        name = f"of-{hashlib.sha256(' '.join(keys).encode()).hexdigest()[:16]}.html"
+        self.lists[name] = keys
+        return f"{FOLDER}/{name}"
+
+
+def write_run_pages(
+    folder: Path,
+    runs: Sequence[RunRecord],
+    trials: Mapping[str, pd.DataFrame],
+    lists: Mapping[str, tuple[str, ...]],
+) -> list[Path]:
+    """Write a page for each run, the lists of runs, and the list of all.
+
+    They are no part of a table or figure, so each is written without waiting for the disk, which
+    would take ten thousand of them a minute. What an earlier report left is removed.
+
+    Parameters
+    ----------
+    folder : Path
+        That of the report, which is there.
+    runs : sequence of RunRecord
+        The runs of the report.
+    trials : mapping of str to DataFrame
+        Task -> their trials.
+    lists : mapping of str to tuple of str
+        Name of a file -> keys of the runs that it lists (`Addresses.lists`).
+
+    Returns
+    -------
+    list of Path
+        What was written.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written.
+    """
+    folder = folder / FOLDER
+    folder.mkdir(exist_ok=True)
+    rates = _rates(trials)
+    by_key = {run.folder.name: run for run in runs}
+    written = [folder / "page.css", folder / "page.js"]
+    for path, content in zip(written, (style(), script()), strict=True):
+        write_whole(path, content.encode())
+    for name, text in _pages(folder, runs, trials, rates):
+        (folder / name).write_text(text, encoding="utf-8")
+        written.append(folder / name)
+    for name, keys in {**lists, "index.html": tuple(by_key)}.items():
+        text = _list([by_key[key] for key in keys], rates, name == "index.html")
+        (folder / name).write_text(text, encoding="utf-8")
+        written.append(folder / name)
+    for path in set(folder.glob("*.html")) - set(written):
+        with path.open("rb") as file:
+            ours = _MARK in file.read(500)
+        if ours:
+            path.unlink()
+    return written
+
+
+def _file(key: str) -> str:
+    return quote(f"{key}.html")
+
+
+def _rates(trials: Mapping[str, pd.DataFrame]) -> dict[str, float]:
+    """Give the success rate of each run."""
+    rates: dict[str, float] = {}
+    for task, frame in trials.items():
+        if len(frame):
+            success = frame[find_task(task).success].astype(float)
+            rates |= success.groupby(frame["key"]).mean().to_dict()
+    return rates
+
+
+def _name(run: RunRecord) -> str:
+    known = run.known
+    instance = f" #{known.map_instance}" if known.map_instance else ""
+    return f"{label(known.method)} on {label(known.map)}{instance}"
+
+
+def _list(runs: Sequence[RunRecord], rates: Mapping[str, float], whole: bool) -> str:
+    """Make a page that lists runs."""
+    shown = pd.DataFrame(
+        {
+            "Experiment": [run.known.experiment for run in runs],
+            "Map": [label(run.known.map) for run in runs],
+            "Instance": [number(run.known.map_instance) for run in runs],
+            "Method": [label(run.known.method) for run in runs],
+            "Seed": [str(run.known.seed) for run in runs],
+            "Run": [run.folder.name[:8] for run in runs],
+            "Trials": [number(run.known.trials) for run in runs],
+            "Succeeded, %": [percent(rates[run.folder.name]) for run in runs],
+            "State": [str(run.state) for run in runs],
+            "Finished, UTC": [run.date[:19].replace("T", " ") for run in runs],
+        }
+    )
+    names = {_name(run) for run in runs}
+    title = names.pop() if len(names) == 1 else "All runs" if whole else "Runs behind a row"
+    keys = tuple((run.folder.name,) for run in runs)
+    table = Table("runs", f"{len(runs)} runs", shown, shown, heads=6, runs=keys)
+    return template("runs.html.j2").render(
+        title=title if whole else f"{title}: {len(runs)} runs",
+        all=whole,
+        table=table,
+        page_of=lambda keys: _file(keys[0]),
+    )
+
+
+def _pages(
+    folder: Path,
+    runs: Sequence[RunRecord],
+    trials: Mapping[str, pd.DataFrame],
+    rates: Mapping[str, float],
+) -> Iterator[tuple[str, str]]:
+    """Make the page of each run."""
+    page = template("run.html.j2")
+    lines = {key: text for task, frame in trials.items() for key, text in _lines(task, frame)}
+    drawn = newest_logs(runs)
+    here = folder.resolve()
+    for run in runs:
+        known, key = run.known, run.folder.name
+        place = os.path.relpath(run.folder.resolve(), here)
+        stills, no_stills = None, _no_stills(run)
+        if key in drawn:
+            found = stills_of(run)
+            stills, no_stills = (None, found) if isinstance(found, str) else (found, "")
+        text = page.render(
+            title=_name(run),
+            key=key,
+            experiment=known.experiment,
+            what=_what(run, rates[key]),
+            command=known.command,
+            log=shlex.quote(str(run.folder / FILE)) if has_log(run) else "",
+            files=_files(run, place),
+            stills=stills,
+            no_stills=no_stills,
+            shown=min(known.trials, MOST_TRIALS),
+            trials=known.trials,
+            lines=lines[key],
+            settings=[(name, _value(value)) for name, value in run.settings.items()],
+            provenance=_provenance(run),
+        )
+        yield f"{key}.html", text
+
+
+def _no_stills(run: RunRecord) -> str:
+    if not has_log(run):
+        return "None: the run kept no log."
+    return (
+        f"None: they are drawn of the newest {MOST_RUNS} runs whose logs have no more than "
+        f"{size_text(MOST_BYTES)} in all."
+    )
+
+
+def _value(value: object) -> str:
+    return (
+        "null" if value is None else str(value).lower() if isinstance(value, bool) else str(value)
+    )
+
+
+def _what(run: RunRecord, rate: float) -> list[tuple[str, str]]:
+    known = run.known
+    what = [
+        ("state", f"{run.state}: {run.status.message}" if run.status.message else str(run.state)),
+        ("task", known.task),
+        ("map", f"{label(known.map)}, instance {known.map_instance}"),
+        ("start, target", f"{known.start}, {known.target}"),
+        (find_task(known.task).groups[0], label(known.method)),
+        ("preset", known.preset),
+        *((f"changed: {name}", _value(value)) for name, value in known.changes.items()),
+        ("seed", str(known.seed)),
+        ("trials", number(known.trials)),
+        ("succeeded", f"{percent(rate)} %"),
+        ("started", run.status.started),
+        ("finished", run.status.finished or ""),
+    ]
+    return [(name, text.removesuffix("+00:00")) for name, text in what]
+
+
+def _files(run: RunRecord, place: str) -> list[tuple[str, str, str]]:
+    """Give name, address and size of a run's files."""
+    files = list(run.known.files.items())[:_MOST_FILES]
+    sizes = [(name, size_text(entry.bytes)) for name, entry in files]
+    sizes += [(name, "") for name in (MANIFEST, STATUS)]
+    return [(name, quote(f"{place}/{name}"), size) for name, size in sizes]
+
+
+def _provenance(run: RunRecord) -> list[tuple[str, str]]:
+    known = run.known
+    inputs = {**known.map_inputs, **known.method_inputs, **known.late_inputs}
+    return [
+        ("key", known.key),
+        ("setting", known.setting),
+        *known.versions.items(),
+        ("map's content, SHA-256", known.map_digest),
+        *((f"{path}, SHA-256", digest) for path, digest in inputs.items()),
+    ]
+
+
+def _lines(task: str, trials: pd.DataFrame) -> Iterator[tuple[str, str]]:
+    """Write the first trials of each run as CSV, without what is the same in all of every run."""
+    if trials.empty:
+        return
+    keys, names = pd.factorize(trials["key"])
+    if (np.diff(keys) < 0).any():
+        order = np.argsort(keys, kind="stable")
+        trials, keys = trials.iloc[order], keys[order]
+    starts = np.searchsorted(keys, np.arange(len(names) + 1))
+    first = np.arange(len(keys)) - starts[keys] < MOST_TRIALS
+    trials, keys = trials[first], keys[first]
+    starts = np.searchsorted(keys, np.arange(len(names) + 1))
+    same_run = keys[1:] == keys[:-1]
+    known = [name for name in columns(find_task(task).row) if name != "trial"]
+    codes = {name: pd.factorize(trials[name])[0] for name in known}
+    varied = [name for name, code in codes.items() if (np.diff(code)[same_run] != 0).any()]
+    table = pa.Table.from_pandas(trials[["trial", *varied]], preserve_index=False)
+    for name, begin, end in zip(names, starts[:-1], starts[1:], strict=True):
+        stream = pa.BufferOutputStream()
+        options = pa.csv.WriteOptions(quoting_header="none")
+        pa.csv.write_csv(table.slice(begin, end - begin), stream, options)
+        yield str(name), stream.getvalue().to_pybytes().decode()
