@@ -16,7 +16,7 @@ import pyarrow.csv
 from gapath.pipelines.numbers.text import number, percent
 from gapath.pipelines.page.page import script, style, template
 from gapath.pipelines.page.section import Table
-from gapath.pipelines.papers.names import label
+from gapath.pipelines.papers.names import label, rank
 from gapath.pipelines.reading.listing import size_text
 from gapath.pipelines.reading.logs import has_log
 from gapath.pipelines.report.stills import MOST_BYTES, MOST_RUNS, newest_logs, stills_of
@@ -124,8 +124,15 @@ def _name(run: RunRecord) -> str:
     return f"{label(known.method)} on {label(known.map)}{instance}"
 
 
+def _place(run: RunRecord) -> tuple[object, ...]:
+    known = run.known
+    method = (rank(known.map), known.map_instance, rank(known.method))
+    return (known.experiment, *method, known.seed, run.folder.name)
+
+
 def _list(runs: Sequence[RunRecord], rates: Mapping[str, float], whole: bool) -> str:
     """Make a page that lists runs."""
+    runs = sorted(runs, key=_place)
     shown = pd.DataFrame(
         {
             "Experiment": [run.known.experiment for run in runs],
@@ -141,11 +148,14 @@ def _list(runs: Sequence[RunRecord], rates: Mapping[str, float], whole: bool) ->
         }
     )
     names = {_name(run) for run in runs}
-    title = names.pop() if len(names) == 1 else "All runs" if whole else "Runs behind a row"
+    title = "All runs" if whole else f"{number(len(runs))} runs behind a row"
+    if len(names) == 1:
+        title += f": {names.pop()}"
     keys = tuple((run.folder.name,) for run in runs)
-    table = Table("runs", f"{len(runs)} runs", shown, shown, heads=6, runs=keys)
+    caption = f"{number(len(runs))} runs; each leads to its own page."
+    table = Table("runs", caption, shown, shown, heads=6, runs=keys)
     return template("runs.html.j2").render(
-        title=title if whole else f"{title}: {len(runs)} runs",
+        title=title,
         all=whole,
         table=table,
         page_of=lambda keys: _file(keys[0]),

@@ -116,6 +116,7 @@
       const line = body.insertRow();
       row.forEach((value, i) => {
         const cell = i ? line.insertCell() : line.appendChild(make("th", { scope: "row", className: "head" }));
+        if (!numbers[i]) cell.classList.add("text");
         cell.textContent = value === "" ? "\u2013" : numbers[i] ? String(Number(Number(value).toPrecision(5))) : value;
         if (numbers[i]) cell.dataset.order = value;
       });
