@@ -60,6 +60,7 @@ def template(name: str) -> Template:
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
+        auto_reload=False,
     )
     environment.globals.update(rows_of=rows_of, width_of=width_of, picture_of=picture_of)
     return environment.get_template(name)

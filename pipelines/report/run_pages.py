@@ -1,10 +1,12 @@
 """A small page for each run, and lists of runs, beside the report."""
 
+import gc
 import hashlib
 import os
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
 from urllib.parse import quote
 
@@ -12,17 +14,18 @@ import numpy as np
 import pandas as pd
 import pyarrow as pa
 import pyarrow.csv
+from markupsafe import Markup
 
 from gapath.pipelines.numbers.text import number, percent
 from gapath.pipelines.page.page import script, style, template
-from gapath.pipelines.page.section import Table
 from gapath.pipelines.papers.names import label, rank
 from gapath.pipelines.reading.listing import size_text
 from gapath.pipelines.reading.logs import has_log
 from gapath.pipelines.report.stills import MOST_BYTES, MOST_RUNS, newest_logs, stills_of
 from gapath.recorders.mcap import FILE
 from gapath.store.durable import write_whole
-from gapath.store.records import MANIFEST, STATUS, RunRecord
+from gapath.store.records import MANIFEST, RunRecord
+from gapath.store.status import STATUS
 from gapath.task import columns, find_task
 
 FOLDER = "runs"
@@ -85,17 +88,16 @@ def write_run_pages(
     folder = folder / FOLDER
     folder.mkdir(exist_ok=True)
     rates = _rates(trials)
-    by_key = {run.folder.name: run for run in runs}
     written = [folder / "page.css", folder / "page.js"]
     for path, content in zip(written, (style(), script()), strict=True):
         write_whole(path, content.encode())
-    for name, text in _pages(folder, runs, trials, rates):
-        (folder / name).write_text(text, encoding="utf-8")
-        written.append(folder / name)
-    for name, keys in {**lists, "index.html": tuple(by_key)}.items():
-        text = _list([by_key[key] for key in keys], rates, name == "index.html")
-        (folder / name).write_text(text, encoding="utf-8")
-        written.append(folder / name)
+    gc.freeze()  # else the collector walks through all records again and again: half of the time
+    try:
+        for name, text in chain(_pages(folder, runs, trials, rates), _lists(runs, rates, lists)):
+            (folder / name).write_bytes(text.encode())
+            written.append(folder / name)
+    finally:
+        gc.unfreeze()
     for path in set(folder.glob("*.html")) - set(written):
         with path.open("rb") as file:
             ours = _MARK in file.read(500)
@@ -130,36 +132,48 @@ def _place(run: RunRecord) -> tuple[object, ...]:
     return (known.experiment, *method, known.seed, run.folder.name)
 
 
-def _list(runs: Sequence[RunRecord], rates: Mapping[str, float], whole: bool) -> str:
-    """Make a page that lists runs."""
+_COLUMNS = (
+    ("Run", False), ("Experiment", False), ("Map", False), ("Instance", True), ("Method", False),
+    ("Seed", True), ("Trials", True), ("Succeeded, %", True), ("State", False),
+    ("Finished, UTC", False),
+)  # fmt: skip
+"""Of a list of runs, and which hold numbers."""
+
+_ROW = Markup(
+    '<tr><th scope="row" class="head"><a href="{}">{}</a></th><td class="text">{}</td>'
+    '<td class="text">{}</td><td>{}</td><td class="text">{}</td><td>{}</td><td>{}</td>'
+    '<td data-order="{}">{}</td><td class="text">{}</td><td class="text">{}</td></tr>'
+)
+
+
+def _row(run: RunRecord, rate: float) -> Markup:
+    """Write the row of a run, which stands in several lists."""
+    known = run.known
+    return _ROW.format(
+        _file(run.folder.name), run.folder.name[:8], known.experiment, label(known.map),
+        known.map_instance, label(known.method), known.seed, known.trials, rate, percent(rate),
+        run.state, run.date[:19].replace("T", " "),
+    )  # fmt: skip
+
+
+def _lists(
+    runs: Sequence[RunRecord],
+    rates: Mapping[str, float],
+    lists: Mapping[str, tuple[str, ...]],
+) -> Iterator[tuple[str, str]]:
+    """Make the pages that list runs: some of them, and all."""
+    page = template("runs.html.j2")
     runs = sorted(runs, key=_place)
-    shown = pd.DataFrame(
-        {
-            "Experiment": [run.known.experiment for run in runs],
-            "Map": [label(run.known.map) for run in runs],
-            "Instance": [number(run.known.map_instance) for run in runs],
-            "Method": [label(run.known.method) for run in runs],
-            "Seed": [str(run.known.seed) for run in runs],
-            "Run": [run.folder.name[:8] for run in runs],
-            "Trials": [number(run.known.trials) for run in runs],
-            "Succeeded, %": [percent(rates[run.folder.name]) for run in runs],
-            "State": [str(run.state) for run in runs],
-            "Finished, UTC": [run.date[:19].replace("T", " ") for run in runs],
-        }
-    )
-    names = {_name(run) for run in runs}
-    title = "All runs" if whole else f"{number(len(runs))} runs behind a row"
-    if len(names) == 1:
-        title += f": {names.pop()}"
-    keys = tuple((run.folder.name,) for run in runs)
-    caption = f"{number(len(runs))} runs; each leads to its own page."
-    table = Table("runs", caption, shown, shown, heads=6, runs=keys)
-    return template("runs.html.j2").render(
-        title=title,
-        all=whole,
-        table=table,
-        page_of=lambda keys: _file(keys[0]),
-    )
+    places = {run.folder.name: i for i, run in enumerate(runs)}
+    rows = [_row(run, rates[run.folder.name]) for run in runs]
+    names = [_name(run) for run in runs]
+    yield "index.html", page.render(title="All runs", whole=True, rows=rows, columns=_COLUMNS)
+    for name, keys in lists.items():
+        mine = sorted(places[key] for key in keys)
+        title = f"{number(len(mine))} runs behind a row"
+        same = {names[i] for i in mine}
+        title += f": {same.pop()}" if len(same) == 1 else ""
+        yield name, page.render(title=title, rows=[rows[i] for i in mine], columns=_COLUMNS)
 
 
 def _pages(
@@ -173,9 +187,14 @@ def _pages(
     lines = {key: text for task, frame in trials.items() for key, text in _lines(task, frame)}
     drawn = newest_logs(runs)
     here = folder.resolve()
+    places: dict[Path, str] = {}
+    methods = {task: find_task(task).groups[0] for task in trials}
     for run in runs:
         known, key = run.known, run.folder.name
-        place = os.path.relpath(run.folder.resolve(), here)
+        parent = run.folder.parent
+        if parent not in places:
+            places[parent] = os.path.relpath(parent.resolve(), here)
+        place = f"{places[parent]}/{key}"
         stills, no_stills = None, _no_stills(run)
         if key in drawn:
             found = stills_of(run)
@@ -184,7 +203,7 @@ def _pages(
             title=_name(run),
             key=key,
             experiment=known.experiment,
-            what=_what(run, rates[key]),
+            what=_what(run, methods[known.task], rates[key]),
             command=known.command,
             log=shlex.quote(str(run.folder / FILE)) if has_log(run) else "",
             files=_files(run, place),
@@ -214,14 +233,14 @@ def _value(value: object) -> str:
     )
 
 
-def _what(run: RunRecord, rate: float) -> list[tuple[str, str]]:
+def _what(run: RunRecord, method: str, rate: float) -> list[tuple[str, str]]:
     known = run.known
     what = [
         ("state", f"{run.state}: {run.status.message}" if run.status.message else str(run.state)),
         ("task", known.task),
         ("map", f"{label(known.map)}, instance {known.map_instance}"),
         ("start, target", f"{known.start}, {known.target}"),
-        (find_task(known.task).groups[0], label(known.method)),
+        (method, label(known.method)),
         ("preset", known.preset),
         *((f"changed: {name}", _value(value)) for name, value in known.changes.items()),
         ("seed", str(known.seed)),
