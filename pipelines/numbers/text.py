@@ -62,3 +62,12 @@ def percent_range(interval: Interval, decimals: int = 1) -> str:
         return NOTHING
     low, high = (f"{100 * end:.{decimals}f}" for end in interval)
     return f"{low} to {high}"
+
+
+def file_size(count: float) -> str:
+    """Write a number of bytes."""
+    for unit in ("B", "kB", "MB"):
+        if count < 1000:
+            return f"{count:.0f} {unit}"
+        count /= 1000
+    return f"{count:.1f} GB"

@@ -14,8 +14,6 @@ A section is one file of pipelines, ``table*.py`` or ``figure_*.py``, that offer
 import importlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from itertools import groupby
-from operator import itemgetter
 from pathlib import Path
 from types import ModuleType
 
@@ -81,11 +79,6 @@ class Table:
     def __post_init__(self) -> None:
         given, rows = len(self.runs), len(self.shown)
         require(given in (0, rows), f"table {self.name}, runs", given, f"one entry a row, {rows}")
-
-    def groups(self) -> list[list[tuple[str, ...]]]:
-        """Give the rows of cells, those with the same first cell together."""
-        rows = self.shown.itertuples(index=False, name=None)
-        return [list(group) for _, group in groupby(rows, key=itemgetter(0))]
 
     def with_runs(self, trials: pd.DataFrame, by: Sequence[str]) -> "Table":
         """Lead each row to the runs behind it.

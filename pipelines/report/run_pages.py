@@ -16,10 +16,9 @@ import pyarrow as pa
 import pyarrow.csv
 from markupsafe import Markup
 
-from gapath.pipelines.numbers.text import number, percent
+from gapath.pipelines.numbers.text import file_size, number, percent
 from gapath.pipelines.page.page import script, style, template
 from gapath.pipelines.papers.names import label, rank
-from gapath.pipelines.reading.listing import size_text
 from gapath.pipelines.reading.logs import has_log
 from gapath.pipelines.report.stills import MOST_BYTES, MOST_RUNS, newest_logs, stills_of
 from gapath.recorders.mcap import FILE
@@ -223,7 +222,7 @@ def _no_stills(run: RunRecord) -> str:
         return "None: the run kept no log."
     return (
         f"None: they are drawn of the newest {MOST_RUNS} runs whose logs have no more than "
-        f"{size_text(MOST_BYTES)} in all."
+        f"{file_size(MOST_BYTES)} in all."
     )
 
 
@@ -255,7 +254,7 @@ def _what(run: RunRecord, method: str, rate: float) -> list[tuple[str, str]]:
 def _files(run: RunRecord, place: str) -> list[tuple[str, str, str]]:
     """Give name, address and size of a run's files."""
     files = list(run.known.files.items())[:_MOST_FILES]
-    sizes = [(name, size_text(entry.bytes)) for name, entry in files]
+    sizes = [(name, file_size(entry.bytes)) for name, entry in files]
     sizes += [(name, "") for name in (MANIFEST, STATUS)]
     return [(name, quote(f"{place}/{name}"), size) for name, size in sizes]
 
