@@ -291,7 +291,7 @@ def test_a_row_leads_to_the_page_of_its_run_and_that_to_its_files(opened, report
 
 def test_a_row_of_several_runs_leads_to_their_list(opened, report):
     page = opened()
-    page.locator("#sweeps-table-plan tbody a").press("Enter")
+    page.locator("#sweeps-table-plan-mine tbody a").press("Enter")
     page.wait_for_url("**/runs/of-*.html")
     assert page.locator("h1").inner_text() == "2 runs behind a row: GA 3 on Map 2"
     page.locator("tbody a").last.click()
