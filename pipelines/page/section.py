@@ -190,16 +190,15 @@ def find_sections() -> list[ModuleType]:
 
 def find_bench_figures() -> list[ModuleType]:
     """Find the modules that draw a figure of a benchmark, in the order of the page."""
-    return _find("bench/figure_*.py")
+    return sorted(_find("bench/figure_*.py"), key=lambda module: module.ORDER)
 
 
 def _find(*patterns: str) -> list[ModuleType]:
-    """Find modules of pipelines whose files are called so, in the order of their `ORDER`."""
+    """Find modules of pipelines whose files are called so."""
     top = Path(__file__).parents[1]
     paths = sorted(path for pattern in patterns for path in top.rglob(pattern))
     names = [".".join(path.relative_to(top).with_suffix("").parts) for path in paths]
-    modules = [importlib.import_module(f"gapath.pipelines.{name}") for name in names]
-    return sorted(modules, key=lambda module: module.ORDER)
+    return [importlib.import_module(f"gapath.pipelines.{name}") for name in names]
 
 
 def _escape(text: str) -> str:
