@@ -12,14 +12,12 @@ from gapath.pipelines.numbers.text import NOTHING, number
 from gapath.pipelines.page.section import Table
 from gapath.pipelines.sweeps.cells import wilson_of
 from gapath.pipelines.sweeps.measures import Effort
-from gapath.pipelines.sweeps.view import View, amount, rate, rounded, text
+from gapath.pipelines.sweeps.view import EVERYWHERE, View, amount, rate, rounded, text
 
 _HELD = 12
 """The best are held against one another, not more than so many."""
 _QUANTITIES = {"evaluations": "expected_evaluations", "seconds": "expected_time"}
 """What a comparison calls what efforts are expected to be."""
-
-EVERYWHERE = "all"
 
 
 class Best(NamedTuple):
@@ -170,7 +168,7 @@ def best_table(view: View, found: list[Best]) -> list[Table]:
     for best in found:
         pair = next((p for p in best.pairs if p.second == best.next["method"]), None)
         by = word if best.effort is None else f"Expected {best.effort.title}"
-        place = "All maps" if best.place == EVERYWHERE else view.labels[best.place]
+        place = view.labels.get(best.place, "All maps")
         name = "success" if best.effort is None else f"expected_{best.effort.name}"
         lines.append(
             {

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import pandas as pd
 
@@ -24,7 +25,7 @@ from gapath.pipelines.sweeps.pictures.many import (
 from gapath.pipelines.sweeps.pictures.shares import shares
 from gapath.pipelines.sweeps.problems import problems_table
 from gapath.pipelines.sweeps.varied import Factor, cases_of, find_sweeps
-from gapath.pipelines.sweeps.view import View, amount, rate, sentence, text, view_of
+from gapath.pipelines.sweeps.view import View, amount, rate, sentence, text, together, view_of
 from gapath.store.records import RunRecord
 from gapath.task import find_task
 
@@ -32,6 +33,8 @@ TASK = ALL
 EXPERIMENT = None
 ORDER = 90
 
+_MAPS = 7
+"""More maps than so many are drawn together."""
 _ROWS = 400
 """A page shows so many rows of a table."""
 
@@ -66,9 +69,12 @@ def views_of(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> list[View]:
 
 
 def _section(view: View, title: str) -> Section:
-    sweep = view.sweep
+    sweep, each_map = view.sweep, view
     figures: list[Figure | None] = []
     remarks = _remarks(view)
+    if sweep.factors and len(sweep.places) > _MAPS:
+        view = together(view)
+        remarks.append("Figures, and what is best, are of all maps together.")
     if len(sweep.settings) == 2 and sweep.whole:
         figures += heat_maps(view)
     elif len(sweep.settings) > 1:
@@ -78,10 +84,10 @@ def _section(view: View, title: str) -> Section:
     elif sweep.factors:
         figures += [curves(view), shares(view)]
     best = find_best(view) if sweep.factors else []
-    tables = [*best_table(view, best), _table(view), *problems_table(view)]
+    tables = [*best_table(view, best), _table(each_map, view), *problems_table(each_map)]
     return Section(
         title=title,
-        text=(sentence(view), *sentences(view, best)),
+        text=(sentence(each_map), *sentences(view, best)),
         tables=tuple(tables),
         figures=tuple(figure for figure in figures if figure is not None),
         remarks=tuple(remarks),
@@ -125,10 +131,15 @@ def _what(view: View) -> str:
     return ", ".join(factor.name for factor in factors[:3]) or "other trials"
 
 
-def _table(view: View) -> Table:
+def _table(view: View, drawn: View) -> Table:
+    """List a sweep's cells, first those of all maps together where these are drawn."""
     rows = _sorted(view)
+    if drawn is not view:
+        rows = pd.concat([_sorted(drawn), rows])
+        view = replace(view, labels=view.labels | drawn.labels)
     data = rows.drop(columns=["cell", "runs"])
-    shown = pd.DataFrame([_cells(view, row) for _, row in rows.head(_ROWS).iterrows()])
+    several = bool(rows["problems"].max() > 1)
+    shown = pd.DataFrame([_cells(view, row, several) for _, row in rows.head(_ROWS).iterrows()])
     heads, behind = 1 + len(_heads(view)), tuple(rows["runs"].head(_ROWS))
     return Table(view.stem, _caption(view, len(rows)), data, shown, heads=heads, runs=behind)
 
@@ -157,14 +168,15 @@ def _heads(view: View) -> list[str]:
     return [factor.name for factor in view.sweep.factors] or [view.sweep.choice]
 
 
-def _cells(view: View, row: pd.Series) -> dict[str, str]:
-    measures, cells = view.measures, view.cells
+def _cells(view: View, row: pd.Series, problems: bool) -> dict[str, str]:
+    """Write a row's cells; of a map's problems only where a map has several."""
+    measures = view.measures
     titles = {factor.name: factor.title.capitalize() for factor in view.sweep.factors}
     titles.setdefault(view.sweep.choice, view.sweep.choice.capitalize())
     shown = {"Map": view.labels[row["place"]]}
     for name in _heads(view):
         shown[titles[name]] = text(row[name])
-    if cells["problems"].max() > 1:
+    if problems:
         shown |= {
             "Problems": number(row["problems"]),
             "Solved once": number(row["once"]),
@@ -177,11 +189,9 @@ def _cells(view: View, row: pd.Series) -> dict[str, str]:
     for effort in view.efforts:
         shown[f"Median {effort.title}"] = number(row[f"{effort.name}_median"] * effort.scale)
     for middle in measures.middles:
-        if cells[f"{middle.name}_median"].notna().any():
-            shown[middle.title] = number(middle.shown(row[f"{middle.name}_median"]))
+        shown[middle.title] = number(middle.shown(row[f"{middle.name}_median"]))
     for share in measures.shares:
-        if cells[share.name].any():
-            shown[share.title] = percent(row[share.name])
+        shown[share.title] = percent(row[share.name])
     return shown
 
 

@@ -2,16 +2,19 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import pandas as pd
 
 from gapath.pipelines.numbers.text import number, percent, span
 from gapath.pipelines.papers.names import label, rank
-from gapath.pipelines.sweeps.cells import Cells
+from gapath.pipelines.sweeps.cells import Cells, summarise_cells
 from gapath.pipelines.sweeps.measures import Effort, Measures
 from gapath.pipelines.sweeps.varied import Factor, Sweep
 from gapath.store.settings import Value
+
+EVERYWHERE = "all"
+"""The place of what is about all maps together."""
 
 _LETTERS = 60
 """A value has no more letters."""
@@ -28,7 +31,7 @@ class View:
     sweep : Sweep
         What varied.
     measures : Measures
-        What is measured.
+        What is measured, without what is known of none of its cells.
     cells : DataFrame
         The rows of `cells.summarise_cells` that belong to the sweep, with its methods' columns.
     trials : DataFrame
@@ -47,10 +50,9 @@ class View:
     stem: str
 
     @property
-    def efforts(self) -> list[Effort]:
-        """Those of which anything is known."""
-        known = self.cells.notna().any()
-        return [each for each in self.measures.efforts if known[f"expected_{each.name}"]]
+    def efforts(self) -> tuple[Effort, ...]:
+        """What its trials spend."""
+        return self.measures.efforts
 
     @property
     def main(self) -> Factor:
@@ -96,7 +98,38 @@ def view_of(sweep: Sweep, cells: Cells, measures: Measures, stem: str) -> View:
     first = trials.drop_duplicates("cell").set_index("cell")["map_source"]
     sources = dict(zip(mine["place"], mine["cell"].map(first), strict=True))
     labels = {place: label(place, source) for place, source in sources.items()}
-    return View(sweep, measures, mine, trials, labels, f"{stem}_{sweep.what}")
+    return View(sweep, _known(measures, mine), mine, trials, labels, f"{stem}_{sweep.what}")
+
+
+def together(view: View) -> View:
+    """Take all maps of a sweep as one, each of whose problems is one of a map.
+
+    Parameters
+    ----------
+    view : View
+        A sweep on several maps.
+
+    Returns
+    -------
+    View
+        The same trials, a cell a method.
+    """
+    cases = view.sweep.cases
+    problems = cases["place"] + " " + cases["problem"]
+    cases = cases.assign(problem=problems, place=EVERYWHERE)
+    sweep = replace(view.sweep, cases=cases)
+    cells = summarise_cells(view.trials, cases, view.measures)
+    whole = view_of(sweep, cells, view.measures, view.stem.removesuffix(f"_{sweep.what}"))
+    return replace(whole, labels={EVERYWHERE: f"All {len(view.sweep.places)} maps"})
+
+
+def _known(measures: Measures, cells: pd.DataFrame) -> Measures:
+    known = cells.notna().any()
+    return measures._replace(
+        efforts=tuple(e for e in measures.efforts if known[f"expected_{e.name}"]),
+        middles=tuple(m for m in measures.middles if known[f"{m.name}_median"]),
+        shares=tuple(share for share in measures.shares if cells[share.name].any()),
+    )
 
 
 def text(value: Value) -> str:

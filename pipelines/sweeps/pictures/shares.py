@@ -78,10 +78,10 @@ def shares(view: View) -> Figure | None:
     return Figure(f"{view.stem}_effort", _caption(view, effort, look), _alt(effort, ends), svg, png)
 
 
-def _effort(view: View, efforts: list[Effort]) -> Effort:
+def _effort(view: View, efforts: tuple[Effort, ...]) -> Effort:
     """Take the first of which every method has any: a graph search beside others has its time."""
     whole = [each for each in efforts if view.cells[f"expected_{each.name}"].notna().all()]
-    return (whole or efforts)[0]
+    return (whole or list(efforts))[0]
 
 
 def _looks(view: View, factor: Factor) -> dict[str, Look]:

@@ -357,3 +357,21 @@ def test_infinite_effort_is_shown_with_the_least_it_can_be():
     least = 104.5 / wilson(0, 10)[1]
     assert shown == f"\N{INFINITY} (at least {least:.0f})"
     assert math.isinf(by_name(section, "population").data["expected_evaluations"].iloc[0])
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_many_maps_are_drawn_together():
+    tried = [
+        Tried(name, map=f"world{i}", success=rate)
+        for name, rate in (("ga1", 0.5), ("ga2", 1.0))
+        for i in range(8)
+    ]
+    (section,) = sections(tried)
+    rows = by_name(section, "planner")
+    assert len(rows.data) == 2 + 16
+    assert list(rows.shown["Map"].iloc[:2]) == ["All 8 maps"] * 2
+    assert list(rows.shown["Planner"].iloc[:2]) == ["GA 2", "GA 1"]
+    assert list(rows.data["n"].iloc[:2]) == [80, 80]
+    assert [len(keys) for keys in rows.runs[:3]] == [8, 8, 1]
+    assert section.text[1].startswith("Most often found: GA 2, 100 (95.4 to 100.0) %.")
+    assert "GA 1 50 %" in by_name(section, "effort").alt
