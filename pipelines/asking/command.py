@@ -36,7 +36,7 @@ def parser() -> argparse.ArgumentParser:
     add("--where", metavar="SQL", help="only runs that fulfil a condition: \"map = 'kg18_test3' "
         "and planner.population >= 80\"")  # fmt: skip
     add("--last", type=int, metavar="N", help="only the N newest of them")
-    add("--columns", metavar="A,B", help="the columns to show")
+    add("--columns", metavar="A,B", help="the columns to show; with --group, behind those of it")
     add("--group", metavar="A,B", help="a row for all runs with the same values in these columns: "
         "trials, success, what a success is expected to take")  # fmt: skip
     add("--sort", metavar="COLUMN", help="the column that orders the rows; -COLUMN: descending")
@@ -70,7 +70,7 @@ def main(arguments: Sequence[str]) -> None:
         by = _columns("--group", given.group, ["key", *frame])
         places = _counting(frame, runs, places)
         results = [each for each in (came[place] for place in places) if each]
-        _group(given, grouped(frame.iloc[places].reset_index(), results, by), len(by))
+        _group(given, grouped(frame.iloc[places].reset_index(), results, by), by)
     else:
         for place in places:
             if runs[place].fault or frame["fault"].notna().iloc[place]:
@@ -132,12 +132,13 @@ def _list(given: argparse.Namespace, frame: pd.DataFrame, keys: Iterable[str]) -
         _write(given, Answer.of(rows), importance(rows))
 
 
-def _group(given: argparse.Namespace, rows: pd.DataFrame, by: int) -> None:
+def _group(given: argparse.Namespace, rows: pd.DataFrame, by: list[str]) -> None:
     rows = _sorted(given, rows)
     if given.columns is not None:
-        rows = rows[_columns("--columns", given.columns, rows)]
+        wanted = _columns("--columns", given.columns, rows)
+        rows = rows[[*(name for name in by if name not in wanted), *wanted]]
     elif not (given.json or given.csv):
-        wanted = [*list(rows)[:by], *FIGURES, *(name for name in METRICS if name not in SPENT)]
+        wanted = [*by, *FIGURES, *(name for name in METRICS if name not in SPENT)]
         rows = rows[[name for name in rows if name in wanted]]
         rows = rows.loc[:, rows.notna().any() | rows.empty]
     _write(given, Answer.of(rows), {name: -i for i, name in enumerate(METRICS)})

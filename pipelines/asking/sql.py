@@ -12,6 +12,9 @@ from gapath.store.records import TRIALS, RunRecord
 from gapath.store.settings import tabular
 
 WHERE = "--sql"
+_OF_RUN = ("method", "preset", "code")
+"""Columns of a run that its trials have, too."""
+
 _NOTHING = "select null::varchar as key where false"
 _RIGHT = "one SELECT over the tables runs and trials"
 
@@ -23,8 +26,9 @@ def asked(text: str, frame: pd.DataFrame, runs: Sequence[RunRecord]) -> tuple[An
     ----------
     text : str
         One SELECT of DuckDB's over two tables: ``runs``, the frame with its index ``key``, and
-        ``trials``, the rows of all ``trials.parquet`` with the ``key`` of their run; a column
-        that a run lacks is null there, and so is NaN. Names with dots may be written as they are.
+        ``trials``, the rows of all ``trials.parquet`` with the key, method, preset and code of
+        their run; a column that a run lacks is null there, and so is NaN. Names with dots may be
+        written as they are.
     frame : DataFrame
         Runs as `gapath.pipelines.reading.frame.run_frame` gives them.
     runs : sequence of RunRecord
@@ -74,7 +78,11 @@ def _answered(
         connection.register("runs", pa.Table.from_pandas(table, preserve_index=False))
         try:
             parts = [_part(connection, each, together) for each in alike if each] or [_NOTHING]
-            connection.execute(f"create view trials as {' union all by name '.join(parts)}")
+            connection.execute(f"create view rows as {' union all by name '.join(parts)}")
+            own = [row[0] for row in connection.execute("describe rows").fetchall()]
+            both = ["rows.*", *(f"runs.{name}" for name in _OF_RUN if name not in own)]
+            joined = f"select {', '.join(both)} from rows join runs using (key)"
+            connection.execute(f"create view trials as {joined}")
             described = connection.execute("describe trials").fetchall()
             columns = list(dict.fromkeys([*columns, *(row[0] for row in described)]))
             statements = connection.extract_statements(quoted(text, columns, WHERE))

@@ -19,7 +19,7 @@ from gapath.store.settings import tabular
 _OWN = {
     "experiment": "str", "task": "str", "map": "str", "map_instance": "Int64", "start": "str",
     "target": "str", "method": "str", "preset": "str", "seed": "UInt64", "trials": "Int64",
-    "state": "str", "date": "str", "fault": "str", "superseded": "str",
+    "code": "str", "state": "str", "date": "str", "fault": "str", "superseded": "str",
 }  # fmt: skip
 """Columns that every frame has, and their types."""
 
@@ -40,9 +40,9 @@ def run_frame(runs: Sequence[RunRecord]) -> pd.DataFrame:
     DataFrame
         One row a run in the order given, the index `key` the name of its folder. Columns:
 
-        - experiment, task, map, map_instance, start, target, method, preset, seed, trials, state
-          and date, as the manifest and the status say, names of maps and methods told apart; of
-          a run without a manifest what is known;
+        - experiment, task, map, map_instance, start, target, method, preset, seed, trials, code
+          (a hash of the sources), state and date, as the manifest and the status say, names of
+          maps and methods told apart; of a run without a manifest what is known;
         - fault, why a run cannot be used, and superseded, the key of the run that counts in its
           place; null of all others;
         - every setting under its full name, lists as JSON, null where a run has none;
@@ -137,7 +137,9 @@ def _named(runs: Sequence[RunRecord]) -> list[RunRecord]:
 
 
 def _own(run: RunRecord) -> dict[str, Any]:
-    known = vars(run.manifest) if run.manifest else {"experiment": run.folder.parent.name}
+    known = {"experiment": run.folder.parent.name}
+    if run.manifest:
+        known = {**vars(run.manifest), "code": run.manifest.versions.get("code")}
     return {**known, "state": str(run.state), "date": run.date, "fault": run.fault or None}
 
 

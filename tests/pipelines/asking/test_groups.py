@@ -38,6 +38,8 @@ def test_groups_are_ordered_by_what_they_came_to(ask):
     rows = rows_of(ask, "--group", "map", "--sort", "-success", "--columns", "success,map")
     assert [row["map"] for row in rows] == list(MAPS)
     assert list(rows[0]) == ["success", "map"]
+    rows = rows_of(ask, "--group", "map", "--columns", "success")
+    assert list(rows[0]) == ["map", "success"]
 
 
 trials = st.lists(

@@ -31,6 +31,14 @@ def test_a_question_in_sql_is_answered_as_pandas_does(ask, outputs):
         assert (row["spent"] is None) == (found == 0)
 
 
+def test_trials_know_the_method_and_the_code_of_their_run(ask):
+    by = "select {0}.key, {0}.method, {0}.preset, {0}.code, count(*) as n from {1} group by all"
+    text = f"{by} order by key"
+    trials = rows_of(ask, "--sql", text.format("trials", "trials"))
+    assert trials == rows_of(ask, "--sql", text.format("runs", "runs join trials using (key)"))
+    assert {row["preset"] for row in trials} == {"ga1", "astar"}
+
+
 def test_columns_that_some_runs_lack_are_null_and_types_are_kept(tmp_path, make_run, ask):
     lacks = make_run(tmp_path, "e", "kg18_test1", "ga1", n=4, log=False, key="lacks")
     pd.read_parquet(lacks / "trials.parquet").drop(columns="turns").to_parquet(
