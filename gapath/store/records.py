@@ -182,15 +182,6 @@ class RunRecord:
         known = self.manifest.settings if self.manifest else None
         return read_settings(self.folder / CONFIG) if known is None else known
 
-    @property
-    def bytes(self) -> int:
-        """Size of all its files."""
-        total = 0
-        for path in self.folder.iterdir():
-            with contextlib.suppress(FileNotFoundError):  # a run at work renames its files
-                total += path.stat().st_size
-        return total
-
 
 def read_record(folder: Path) -> RunRecord:
     """Read what a run folder says.

@@ -71,7 +71,8 @@ def quoted(text: str, columns: Collection[str], where: str) -> str:
         if word.lower() in known:
             name = f'"{known[word.lower()]}"'
         elif group.lower() in groups:
-            raise InputError(where, text, f"a column in place of {word}{near(word, columns)}")
+            right = f"a column in place of {word}{near(word, columns)}"
+            raise InputError(where, " ".join(text.split()), right)
         else:
             name = f'{group}."{known[rest.lower()]}"' if rest.lower() in known else word
         parts += [data[done:place], name.encode()]
@@ -98,7 +99,7 @@ def refusal(error: Exception, text: str, columns: Collection[str], where: str) -
     InputError
         To raise; names an unknown column and the nearest.
     """
-    message = str(error).partition("\n")[0]
+    message, text = str(error).partition("\n")[0], " ".join(text.split())
     unknown = _UNKNOWN.search(message)
     if unknown:
         name = unknown.group(1)
