@@ -1,5 +1,6 @@
 """Which runs stand in which group, and what pairs their trials."""
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -93,22 +94,23 @@ def choose(outputs: Path, by: str | None, wheres: Sequence[str]) -> Choice:
             + "".join(f"; {run}: {reason}" for run, reason in skipped[:1]),
             "a finished run")  # fmt: skip
     if by is None:
-        values: dict[str, Any] = {run.folder.name: where_of[run.folder] for run in used}
+        values = {run.folder.name: where_of[run.folder] for run in used}
         for where in wheres:
             require(where in values.values(), "--where", where, "a condition that a run which can "
                     "be used fulfils")  # fmt: skip
-        names: list[Any] = list(wheres)
+        names = list(wheres)
     else:
         facts = {run.folder.name: _facts(run) for run in used}
         columns = list(dict.fromkeys(name for each in facts.values() for name in each))
         require(by in columns, "--by", by, f"a setting of the runs, or one of {', '.join(_OWN)}"
                 f"{near(by, columns)}")  # fmt: skip
-        values = {key: each.get(by) for key, each in facts.items()}
-        lacking = [run for run in used if values[run.folder.name] is None]
+        lacking = [run for run in used if by not in facts[run.folder.name]]
         skipped += [Skipped(run.name, f"has no {by}") for run in lacking]
-        used = [run for run in used if values[run.folder.name] is not None]
-        names = _in_order({values[run.folder.name] for run in used}, by)
-        only = f"{len(used)} runs" + (f", all of {_shown(names[0], by)}" if names else "")
+        used = [run for run in used if by in facts[run.folder.name]]
+        found = _in_order({facts[run.folder.name][by] for run in used}, by)
+        names = list(dict.fromkeys(_shown(each, by) for each in found))
+        values = {run.folder.name: _shown(facts[run.folder.name][by], by) for run in used}
+        only = f"{len(used)} runs, all of {names[0]}"
         require(len(names) > 1, "--by", f"{by}: {only}", "two values or more")
     tasks = sorted({run.known.task for run in used})
     require(len(tasks) == 1, "task", ", ".join(tasks), "runs of one task; choose it by --where "
@@ -119,14 +121,14 @@ def choose(outputs: Path, by: str | None, wheres: Sequence[str]) -> Choice:
 def _choice(
     used: Sequence[RunRecord],
     trials: pd.DataFrame,
-    groups: tuple[str | None, Mapping[str, Any], Sequence[Any]],
+    groups: tuple[str | None, Mapping[str, str], Sequence[str]],
     left_out: Sequence[Skipped],
 ) -> Choice:
     by, values, names = groups
     settings = {run.folder.name: _treatment(run) for run in used}
     varying = _varying(settings.values())
     varying = [setting for setting in varying if setting != by]
-    mine: dict[Any, list[Mapping[str, Value]]] = {each: [] for each in names}
+    mine: dict[str, list[Mapping[str, Value]]] = {each: [] for each in names}
     for run in used:
         mine[values[run.folder.name]].append(settings[run.folder.name])
     within = {setting for each in mine.values() for setting in _varying(each)}
@@ -142,7 +144,6 @@ def _choice(
         }
     )
     group = keys.map(values).astype(pd.CategoricalDtype(names, ordered=True))
-    group = group.cat.rename_categories([_shown(each, by) for each in names])
     versions = sorted({str(run.known.versions.get("gapath", "?")) for run in used})
     return Choice(find_task(used[0].known.task), trials, group, also, beside, tuple(left_out),
                   tuple(versions))  # fmt: skip
@@ -174,14 +175,14 @@ def _facts(run: RunRecord) -> dict[str, Any]:
 def _in_order(values: set[Any], by: str) -> list[Any]:
     if by in _NAMES:
         return sorted(values, key=lambda value: rank(str(value)))
-    return sorted(values, key=lambda value: (isinstance(value, str), value))
+    return sorted(values, key=lambda value: (value is None, isinstance(value, str), value or 0))
 
 
-def _shown(value: Any, by: str | None) -> str:
+def _shown(value: Any, by: str) -> str:
     if by in _NAMES:
         return label(str(value))
-    if isinstance(value, bool):
-        return str(value).lower()
+    if value is None or isinstance(value, bool):
+        return json.dumps(value)
     return f"{value:.12g}" if isinstance(value, float) else str(value)
 
 

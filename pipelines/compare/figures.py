@@ -89,7 +89,7 @@ def _intervals(comparison: Comparison, by: str, order: Sequence[str]) -> Figure:
     svg, png = render(canvas)
     caption = (
         f"{wording.title}, with 95 % intervals; then against the best. Green: the best; orange: "
-        "told apart from it (Holm); blue: not."
+        "told apart from it (Holm); blue and hollow: not."
     )
     values = ", ".join(f"{name} {wording.value(known[name].value or 0)}" for name in names)
     return Figure(f"comparison_{quantity}", caption, f"{wording.title}: {values}", svg, png)
@@ -125,7 +125,8 @@ def _draw(
     value, low, high = np.array(bars).T
     places = np.arange(len(bars))
     lines(places, low, high, colors=colors, linewidth=1.4)
-    points(value, places, c=colors, s=16, zorder=3)
+    inner = ["white" if color == _ALIKE else color for color in colors]
+    points(value, places, facecolors=inner, edgecolors=colors, s=16, zorder=3)
 
 
 def _upright(panel: Axes) -> Callable[..., object]:

@@ -140,6 +140,8 @@ def _differing(omnibus: Omnibus, count: int) -> str:
     over = f" over {omnibus.blocks} blocks" if omnibus.blocks else ""
     if omnibus.p is None:
         return f"Whether the {count} groups differ at all is not known: {omnibus.why}."
+    if omnibus.why:
+        return f"The {count} groups do not differ: {omnibus.why}."
     told = f"{omnibus.test}{over}, {probability(omnibus.p)}"
     if omnibus.p < LEVEL:
         return f"The {count} groups differ ({told})."

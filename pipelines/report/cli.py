@@ -45,6 +45,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         elif arguments[:1] == ["compare"]:
             from gapath.pipelines.compare import command as comparing
 
+            gc.disable()
             comparing.run(arguments[1:])
         else:
             chosen = _report_parser().parse_args(arguments)
