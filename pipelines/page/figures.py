@@ -173,8 +173,8 @@ def render(canvas: Canvas) -> tuple[bytes, bytes]:
 
 
 _SCHEME = (
-    f"svg{{--i:{INK};--p:none;--g:{GRID}}}"
-    "@media(prefers-color-scheme:dark){svg{--i:#e4e7eb;--g:#3a424d}}"
+    f"svg{{--i:{INK};--p:#ffffff;--g:{GRID}}}"
+    "@media(prefers-color-scheme:dark){svg{--i:#e4e7eb;--p:#15191e;--g:#3a424d}}"
 )
 _SHORTER = (
     (re.compile(r"<\?xml.*?<svg", re.DOTALL), "<svg"),
@@ -196,8 +196,8 @@ def picture_of(svg: bytes) -> str:
     Returns
     -------
     str
-        A data URI to stand between double quotes: on what is behind it, its ink and grid as the
-        page's scheme wants them.
+        A data URI to stand between double quotes: its ink, paper and grid are those of the page's
+        style sheet, in its light and its dark scheme.
     """
     text = svg.decode()
     for pattern, shorter in _SHORTER:

@@ -11,7 +11,7 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure as Canvas
 
 from gapath.pipelines.numbers.text import number
-from gapath.pipelines.page.figures import WIDTH, looks_of, panels, render, style
+from gapath.pipelines.page.figures import INK, PAPER, WIDTH, looks_of, panels, render, style
 from gapath.pipelines.page.section import Figure
 from gapath.pipelines.sweeps.cells import wilson_of
 from gapath.pipelines.sweeps.importance import Importance
@@ -75,12 +75,12 @@ def parallel(view: View) -> Figure:
             color = colors(norm(value)) if np.isfinite(value) else "#4d4d4d"
             panel.plot(np.arange(len(y)), y + row["shift"], color=color, linewidth=1.2, alpha=0.8)
         for x, factor in enumerate(factors):
-            panel.axvline(x, color="black", linewidth=0.8)
+            panel.axvline(x, color=INK, linewidth=0.8)
             step = -(-len(factor.levels) // _TICKS)
             for level in factor.levels[::step]:
                 panel.text(
                     x + 0.04, _place(factor, level), text(level)[:14], fontsize=8, va="center",
-                    bbox={"fc": "white", "ec": "none", "pad": 0.6, "alpha": 0.75},
+                    bbox={"fc": PAPER, "ec": "none", "pad": 0.6, "alpha": 0.75},
                 )  # fmt: skip
         panel.grid(visible=False)
         panel.set_xticks(range(len(factors)), [_broken(factor.title) for factor in factors])
@@ -252,10 +252,10 @@ def importances(view: View, found: Importance, titles: dict[str, str]) -> Figure
         for y, weight in enumerate(found.weights):
             color = "#0072B2" if weight.told else "#b0b0b0"
             panel.barh(y, 100 * weight.share, color=color, height=0.6)
-            panel.hlines(y, 100 * weight.low, 100 * weight.high, color="black", linewidth=1.2)
+            panel.hlines(y, 100 * weight.low, 100 * weight.high, color=INK, linewidth=1.2)
         panel.set_yticks(range(len(found.weights)), [titles[w.name] for w in found.weights])
         panel.set_ylim(len(found.weights) - 0.5, -0.5)
-        panel.axvline(0, color="black", linewidth=0.8)
+        panel.axvline(0, color=INK, linewidth=0.8)
         panel.set_xlabel("share of variance, %")
         svg, png = render(canvas)
     words = "; ".join(

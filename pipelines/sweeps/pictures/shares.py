@@ -89,7 +89,7 @@ def _looks(view: View, factor: Factor) -> dict[str, Look]:
     if factor.numeric:
         places = np.linspace(0, len(factor.levels) - 1, min(len(factor.levels), CURVES))
         levels = [factor.levels[i] for i in np.unique(places.round().astype(int))]
-        colors = matplotlib.colormaps["viridis"](np.linspace(0, 0.88, len(levels)))
+        colors = matplotlib.colormaps["viridis"](np.linspace(0.25, 0.88, len(levels)))
         hexes = [matplotlib.colors.to_hex(color) for color in colors]
         return {repr(v): Look(color, "-") for v, color in zip(levels, hexes, strict=True)}
     means = view.cells.groupby(factor.name)["success"].mean().sort_values(ascending=False)
