@@ -4,7 +4,8 @@ from collections.abc import Callable, Sequence
 
 import pandas as pd
 
-from gapath.pipelines.numbers.summary import Spread, summarise_by
+from gapath.pipelines.numbers.grouped import Spread
+from gapath.pipelines.numbers.summary import summarise_by
 from gapath.pipelines.numbers.text import NOTHING, middle, number, percent, percent_range, span
 from gapath.pipelines.page.section import RECONSTRUCTED, Section, Table
 from gapath.pipelines.papers.kg18 import SECONDS, found_seconds, implied_epochs

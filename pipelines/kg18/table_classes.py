@@ -1,9 +1,11 @@
 """KG18's known maps as classes: the success of each planner over many instances."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import pandas as pd
 
+from gapath.pipelines.numbers.grouped import Groups
 from gapath.pipelines.numbers.summary import over_instances, summarise, summarise_by
 from gapath.pipelines.numbers.text import middle, number, percent, percent_range
 from gapath.pipelines.page.section import RECONSTRUCTED, Section, Table
@@ -48,26 +50,28 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
     )
 
 
-def summarise_class(trials: pd.DataFrame) -> dict[str, float]:
-    """Summarise a planner's trials over the instances of a class.
+def summarise_class(trials: pd.DataFrame, groups: Groups) -> dict[str, Any]:
+    """Summarise planners' trials over the instances of classes.
 
     Parameters
     ----------
     trials : DataFrame
         One row a trial.
+    groups : Groups
+        The class and planner of each.
 
     Returns
     -------
     dict
         What `over_instances` gives, success being the rate; quartiles of epochs and found_epochs.
     """
-    row = summarise(trials)
+    row = summarise(trials, groups)
     epochs = {
         f"{name}_{key}": row[f"{name}_{key}"]
         for name in ("epochs", "found_epochs")
         for key in ("median", "q1", "q3")
     }
-    return over_instances(trials, "feasible", "success") | epochs
+    return over_instances(trials, groups, "feasible", "success") | epochs
 
 
 def _table(rows: pd.DataFrame) -> Table:

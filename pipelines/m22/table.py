@@ -5,11 +5,12 @@ import math
 from collections import defaultdict
 from collections.abc import Sequence
 
+import numpy as np
 import pandas as pd
 
 from gapath.pipelines.m22.remarks import remarks_of
+from gapath.pipelines.numbers.grouped import Groups, grouped
 from gapath.pipelines.numbers.statistics import wilson
-from gapath.pipelines.numbers.summary import spread, summarise_by
 from gapath.pipelines.numbers.text import NOTHING, number, percent, percent_range, tenths
 from gapath.pipelines.page.section import Section, Table
 from gapath.pipelines.papers.m22 import EXACT, MAPS, PAPER
@@ -81,14 +82,13 @@ def with_references(trials: pd.DataFrame) -> pd.DataFrame:
     """
     found = trials[trials["feasible"]]
     shortest = found.groupby(["map", "planner"])[["line_length", "length"]].min()
-    graph = [
-        _reference(shortest["line_length"], name, EXACT.get(planner, planner))
-        for name, planner in zip(trials["map"], trials["planner"], strict=True)
-    ]
-    pixels = [_reference(shortest["length"], name, "inflated_astar") for name in trials["map"]]
+    names, groups = grouped(trials, ["map", "planner"])
+    pairs = [(str(name), str(planner)) for name, planner in names.to_numpy()]
+    graph = [_reference(shortest["line_length"], name, EXACT.get(of, of)) for name, of in pairs]
+    pixels = [_reference(shortest["length"], name, "inflated_astar") for name, _ in pairs]
     known = trials["planner"].isin({*EXACT, *EXACT.values()})
-    gap = (trials["line_length"] / pd.Series(graph, index=trials.index) - 1).where(known)
-    above = trials["length"] / pd.Series(pixels, index=trials.index) - 1
+    gap = (trials["line_length"] / np.array(graph)[groups.of] - 1).where(known)
+    above = trials["length"] / np.array(pixels)[groups.of] - 1
     return trials.assign(gap=gap, above_pixels=above)
 
 
@@ -112,7 +112,8 @@ def summarise_methods(trials: pd.DataFrame) -> pd.DataFrame:
         scene must not count less; the worst gap; mean epochs and evaluations and quartiles of
         seconds of all trials; the paper's f, generations and seconds.
     """
-    return summarise_by(trials, ["planner"], _summarise_method)
+    methods = sorted(trials.groupby("planner"), key=lambda pair: rank(pair[0]))
+    return pd.DataFrame([{"planner": name, **_summarise_method(own)} for name, own in methods])
 
 
 def _summarise_method(trials: pd.DataFrame) -> dict[str, float]:
@@ -122,6 +123,7 @@ def _summarise_method(trials: pd.DataFrame) -> dict[str, float]:
     evolves = trials["epochs"].gt(0).any()
     means = scenes[["line_length", "gap", "above_pixels"]].mean().mean()
     paper = PAPER.get(str(trials["planner"].iloc[0]), (math.nan,) * 3)
+    seconds = Groups.one(len(trials)).spreads(trials["plan_time_s"])._asdict()
     return {
         "scenes": len(rates),
         "n": len(trials),
@@ -135,7 +137,7 @@ def _summarise_method(trials: pd.DataFrame) -> dict[str, float]:
         "above_pixels": means["above_pixels"],
         "epochs": trials["epochs"].mean() if evolves else math.nan,
         "evaluations": trials["evaluations"].mean() if evolves else math.nan,
-        **{f"seconds_{k}": v for k, v in spread(trials["plan_time_s"])._asdict().items()},
+        **{f"seconds_{key}": float(value[0]) for key, value in seconds.items()},
         **{f"paper_{k}": v for k, v in zip(("f", "epochs", "seconds"), paper, strict=True)},
     }
 
@@ -236,10 +238,15 @@ def summarise_stages(trials: pd.DataFrame) -> pd.DataFrame:
     DataFrame
         planner, then a column a stage in seconds, missing where a planner has no such stage.
     """
-    times = pd.DataFrame([json.loads(text) for text in trials["stage_times_s"]])
-    stages = [name for name in STAGES if name in times]
-    times = times.reindex(columns=stages).assign(planner=trials["planner"].to_numpy())
-    medians = times.groupby("planner").median()
+    times = {name: np.full(len(trials), np.nan) for name in STAGES}
+    met = set()
+    for i, text in enumerate(trials["stage_times_s"]):
+        for name, seconds in json.loads(text).items():
+            if name in times:
+                times[name][i] = seconds
+                met.add(name)
+    stages = pd.DataFrame({name: times[name] for name in STAGES if name in met})
+    medians = stages.groupby(trials["planner"].to_numpy()).median().rename_axis("planner")
     return medians.loc[sorted(medians.index, key=rank)].reset_index()
 
 

@@ -1,47 +1,21 @@
-"""What a group of trials comes to: one row of a table."""
+"""What groups of trials come to: rows of a table."""
 
-from collections.abc import Callable
-from typing import NamedTuple
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from gapath.pipelines.numbers.statistics import expected_running_time, median_interval, wilson
+from gapath.pipelines.numbers.grouped import Groups, grouped
+from gapath.pipelines.numbers.statistics import wilson
 from gapath.pipelines.papers.names import rank
 
-
-class Spread(NamedTuple):
-    """Median, its 95 % bootstrap interval, and quartiles; NaN where there are no values."""
-
-    median: float
-    low: float
-    high: float
-    q1: float
-    q3: float
+Summary = Callable[[pd.DataFrame, Groups], Mapping[str, Any]]
+"""Sums up trials: gives columns with a value a group."""
 
 
-def spread(values: pd.Series) -> Spread:
-    """Describe how values spread.
-
-    Parameters
-    ----------
-    values : Series of float
-        In any unit; missing ones are left out.
-
-    Returns
-    -------
-    Spread
-        In the unit of the values.
-    """
-    known = values.dropna().to_numpy(dtype=float)
-    if known.size == 0:
-        return Spread(*[np.nan] * 5)
-    q1, median, q3 = (float(value) for value in np.quantile(known, (0.25, 0.5, 0.75)))
-    return Spread(median, *median_interval(known), q1, q3)
-
-
-def summarise(trials: pd.DataFrame) -> dict[str, float]:
-    """Summarise trials of one setting, failures included.
+def summarise(trials: pd.DataFrame, groups: Groups) -> dict[str, Any]:
+    """Summarise trials of some settings, failures included.
 
     Epochs, evaluations and seconds are those of all trials: a failed one counts with what
     it spent. The ratios exist only where a path does; epochs, evaluations and the
@@ -51,38 +25,68 @@ def summarise(trials: pd.DataFrame) -> dict[str, float]:
     ----------
     trials : DataFrame
         One row a trial.
+    groups : Groups
+        The setting of each.
 
     Returns
     -------
     dict
         n, found, success and its interval; for epochs, found_epochs (those of trials that found
         a path), evaluations, seconds, optimality_ratio and length_ratio the fields of `Spread`;
-        expected evaluations and seconds to a path.
+        expected evaluations and seconds to a path. A value a group each.
     """
-    n, found = len(trials), int(trials["feasible"].sum())
-    rate = found / n if n else np.nan
-    low, high = wilson(rate, n)
-    spent = trials[["epochs", "evaluations"]].astype(float)
-    if not spent.to_numpy().any():
-        # A graph search has no epochs, rather than none, and does the same in each trial.
-        spent[:] = low = high = np.nan
-    row: dict[str, float] = {"n": n, "found": found}
-    row |= {"success": rate, "success_low": low, "success_high": high}
-    spent = spent.assign(seconds=trials["plan_time_s"])
-    spent = spent.assign(found_epochs=spent["epochs"].where(trials["feasible"]))
-    ratios = trials[["optimality_ratio", "length_ratio"]]
-    for name, values in (*spent.items(), *ratios.items()):
-        row |= {f"{name}_{key}": value for key, value in spread(values)._asdict().items()}
+    feasible = trials["feasible"].to_numpy(dtype=np.bool_)
+    n, found = groups.sizes, groups.counts(feasible)
+    spent = {name: trials[name].to_numpy(dtype=np.float64) for name in ("epochs", "evaluations")}
+    # A graph search has no epochs, rather than none, and does the same in each trial.
+    drawn = groups.counts((spent["epochs"] != 0) | (spent["evaluations"] != 0)) > 0
+    known = drawn[groups.of]
+    spent = {name: np.where(known, values, np.nan) for name, values in spent.items()}
+    spent["seconds"] = trials["plan_time_s"].to_numpy()
+    spent["found_epochs"] = np.where(feasible, spent["epochs"], np.nan)
+    row: dict[str, Any] = {"n": n, "found": found, **rates("success", found, n)}
+    row["success_low"], row["success_high"] = (
+        np.where(drawn, row[name], np.nan) for name in ("success_low", "success_high")
+    )
+    ratios = {name: trials[name] for name in ("optimality_ratio", "length_ratio")}
+    for name, values in (spent | ratios).items():
+        row |= {f"{name}_{key}": each for key, each in groups.spreads(values)._asdict().items()}
     for name in ("evaluations", "seconds"):
-        row[f"ert_{name}"] = expected_running_time(spent[name].to_numpy(), trials["feasible"])
+        row[f"ert_{name}"] = expected(groups.sums(spent[name]), found)
     return row
 
 
-def summarise_by(
-    trials: pd.DataFrame,
-    by: list[str],
-    summary: Callable[[pd.DataFrame], dict[str, float]] = summarise,
-) -> pd.DataFrame:
+def expected(spent: Any, successes: Any) -> Any:
+    """Give `statistics.expected_running_time` of groups: what each spent, for each success."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(successes > 0, spent / successes, np.inf)
+
+
+def rates(name: str, successes: Any, n: Any, units: Any = None) -> dict[str, Any]:
+    """Give rates of groups with the 95 % Wilson interval.
+
+    Parameters
+    ----------
+    name : str
+        What the rate is called.
+    successes, n : (groups,) float
+        How many there were, of how many.
+    units : (groups,) int, optional
+        How many of them are independent, `n` by default.
+
+    Returns
+    -------
+    dict
+        The rate under its name, and with _low and _high.
+    """
+    rate = successes / n
+    units = n if units is None else units
+    ends = [wilson(each, int(count)) for each, count in zip(rate, units, strict=True)]
+    low, high = np.array(ends).reshape(-1, 2).T
+    return {name: rate, f"{name}_low": low, f"{name}_high": high}
+
+
+def summarise_by(trials: pd.DataFrame, by: list[str], summary: Summary = summarise) -> pd.DataFrame:
     """Summarise each group of trials, in the papers' order.
 
     Parameters
@@ -92,28 +96,29 @@ def summarise_by(
     by : list of str
         The columns that name a group.
     summary : callable
-        Summarises a group.
+        Summarises groups.
 
     Returns
     -------
     DataFrame
         The columns of `by`, then those of the summary.
     """
-    rows = [
-        {**dict(zip(by, key, strict=True)), **summary(group)}
-        for key, group in trials.groupby(by, sort=True)
-    ]
-    rows.sort(key=lambda row: [rank(str(row[name])) for name in by])
-    return pd.DataFrame(rows)
+    names, groups = grouped(trials, by)
+    ranks = [[rank(str(cell)) for cell in row] for row in names.itertuples(index=False)]
+    order = sorted(range(len(names)), key=ranks.__getitem__)
+    rows = names.assign(**summary(trials, groups))
+    return rows.iloc[order].reset_index(drop=True)
 
 
-def over_instances(trials: pd.DataFrame, success: str, name: str) -> dict[str, float]:
-    """Summarise the success of a method over the instances of a class of maps.
+def over_instances(trials: pd.DataFrame, groups: Groups, success: str, name: str) -> dict[str, Any]:
+    """Summarise the success of methods over the instances of a class of maps.
 
     Parameters
     ----------
     trials : DataFrame
-        The trials of one method on the instances of one class.
+        The trials of methods on the instances of classes.
+    groups : Groups
+        The method and class of each.
     success : str
         The column that says whether a trial succeeded.
     name : str
@@ -124,16 +129,38 @@ def over_instances(trials: pd.DataFrame, success: str, name: str) -> dict[str, f
     dict
         instances, n (trials), the rate, which is the mean of the instances' rates, and its
         interval, Wilson's counting instances; always and never, how many instances succeeded in
-        all trials or in none.
+        all trials or in none. A value a group each.
     """
-    rates = trials.groupby("map_instance")[success].mean()
-    low, high = wilson(float(rates.mean()), len(rates))
+    of, rate = rates_within(trials[success], groups, trials["map_instance"])
+    instances = of.sizes
     return {
-        "instances": len(rates),
-        "n": len(trials),
-        name: float(rates.mean()),
-        f"{name}_low": low,
-        f"{name}_high": high,
-        "always": int((rates == 1).sum()),
-        "never": int((rates == 0).sum()),
+        "instances": instances,
+        "n": groups.sizes,
+        **rates(name, of.sums(rate), instances),
+        "always": of.counts(rate == 1),
+        "never": of.counts(rate == 0),
     }
+
+
+def rates_within(flags: pd.Series, groups: Groups, unit: pd.Series) -> tuple[Groups, Any]:
+    """Give the rate of each unit within each group, such as an instance of a class.
+
+    Parameters
+    ----------
+    flags : Series of bool
+        Whether a trial succeeded.
+    groups : Groups
+        The group of each trial.
+    unit : Series
+        Its unit.
+
+    Returns
+    -------
+    groups : Groups
+        The group of each unit.
+    rates : (units,) float64
+        The share of its trials that succeeded.
+    """
+    rate = flags.groupby([groups.of, unit], observed=True).mean()
+    of = rate.index.get_level_values(0).to_numpy()
+    return Groups(of, groups.count), rate.to_numpy(dtype=np.float64)

@@ -1,12 +1,17 @@
 """From run folders to tidy frames, one for each task: a row a trial."""
 
+import hashlib
 import json
 import math
-from collections.abc import Callable, Iterable, Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, NamedTuple
 
+import numpy as np
 import pandas as pd
-from pandas.api.types import is_bool_dtype, is_numeric_dtype
+import pyarrow as pa
+from numpy.typing import NDArray
+from pyarrow import parquet, types
 from tqdm import tqdm
 
 from gapath.discovery import kinds
@@ -14,14 +19,38 @@ from gapath.errors import InputError, require
 from gapath.pipelines.reading.counted import superseded
 from gapath.pipelines.reading.names import told_apart
 from gapath.store.records import CONFIG, TRIALS, RunRecord
-from gapath.store.runfolder import RunFolder
 from gapath.task import columns, find_task, metrics
 
-_CHECKS: dict[type, tuple[Callable[[pd.Series], bool], str]] = {
-    int: (is_numeric_dtype, "numbers"),
-    float: (is_numeric_dtype, "numbers"),
-    bool: (is_bool_dtype, "booleans"),
+_TEXT = pa.dictionary(pa.int32(), pa.string())
+
+
+class _Form(NamedTuple):
+    """How a column is held."""
+
+    fits: Callable[[pa.DataType], bool]
+    what: str
+    held: pa.DataType
+
+
+def _is_number(kind: pa.DataType) -> bool:
+    return bool(types.is_integer(kind) or types.is_floating(kind) or types.is_boolean(kind))
+
+
+def _is_text(kind: pa.DataType) -> bool:
+    kind = kind.value_type if types.is_dictionary(kind) else kind
+    return bool(types.is_string(kind) or types.is_large_string(kind))
+
+
+_FORMS: dict[type, _Form] = {
+    str: _Form(_is_text, "text", _TEXT),
+    int: _Form(_is_number, "whole numbers", pa.int64()),
+    float: _Form(_is_number, "numbers", pa.float64()),
+    bool: _Form(types.is_boolean, "booleans", pa.bool_()),
 }
+_SEED = _Form(_is_number, "whole numbers from 0", pa.uint64())
+
+_TOGETHER = 256
+"""Runs whose rows are put together at a time: thousands of small pieces take more room."""
 
 
 class Skipped(NamedTuple):
@@ -35,8 +64,9 @@ class Collected(NamedTuple):
     """What `read_trials` gives."""
 
     trials: dict[str, pd.DataFrame]
-    """For each task one row a trial: the columns of ``trials.parquet``, and `key`, the name of
-    the run's folder."""
+    """For each task one row a trial: the columns of its rows, and `key`, the name of the run's
+    folder. Text is categorical, its categories in the alphabet's order. What a run was set to is
+    not repeated in each of its rows: `RunRecord.settings` has it."""
     skipped: list[Skipped]
     runs: list[RunRecord]
     """The runs that they come from, under names that tell them apart."""
@@ -61,69 +91,137 @@ def read_trials(runs: Iterable[RunRecord]) -> Collected:
     runs : list of RunRecord
         The runs that the trials come from, under names that tell them apart.
     """
-    frames: dict[str, list[pd.DataFrame]] = {task: [] for task in kinds("task")}
-    used: list[RunRecord] = []
-    skipped: list[Skipped] = []
     runs = sorted(runs, key=lambda run: run.name)
     older = superseded(runs)
-    skipped += [Skipped(run.name, run.fault) for run in runs if run.fault]
+    skipped = [Skipped(run.name, run.fault) for run in runs if run.fault]
     skipped += [Skipped(run.name, f"{new.name} counts, of the same setting") for run, new in older]
     left_out = {each.run for each in skipped}
-    for run in tqdm([run for run in runs if run.name not in left_out], "runs", disable=None):
-        try:
-            frames[run.known.task].append(_trials(run))
-            used.append(run)
-        except InputError as error:
-            skipped.append(Skipped(run.name, str(error)))
+    good = [run for run in runs if run.name not in left_out]
+    used: list[RunRecord] = []
+    rows: dict[str, list[pa.Table]] = {task: [] for task in kinds("task")}
+    lengths: dict[str, list[int]] = {task: [] for task in rows}
+    with ThreadPoolExecutor() as pool, tqdm(total=len(good), desc="runs", disable=None) as bar:
+        for at in range(0, len(good), _TOGETHER):
+            some = good[at : at + _TOGETHER]
+            fresh: dict[str, list[pa.Table]] = {task: [] for task in rows}
+            for run, table in zip(some, pool.map(_read, some), strict=True):
+                if isinstance(table, InputError):
+                    skipped.append(Skipped(run.name, str(table)))
+                    continue
+                used.append(run)
+                fresh[run.known.task].append(table)
+                lengths[run.known.task].append(len(table))
+            for task, tables in fresh.items():
+                if tables:
+                    rows[task].append(_together(tables))
+            bar.update(len(some))
     used = told_apart(used)
-    trials = {task: _joined(task, mine, used) for task, mine in frames.items()}
+    trials = {}
+    for task, counts in lengths.items():
+        mine = [run for run in used if run.known.task == task]
+        trials[task] = _frame(task, rows.pop(task), mine, counts)
     return Collected(trials, sorted(skipped), used)
 
 
-def _joined(task: str, frames: list[pd.DataFrame], runs: Sequence[RunRecord]) -> pd.DataFrame:
-    if not frames:
-        return pd.DataFrame(columns=[*columns(find_task(task).row), "key"])
-    trials = pd.concat(frames, ignore_index=True)
-    known = {run.folder.name: run.known for run in runs}
-    names = {"map": "map", find_task(task).groups[0]: "method"}
-    return trials.assign(
-        **{
-            column: trials["key"].map({key: getattr(each, name) for key, each in known.items()})
-            for column, name in names.items()
-        }
-    )
+def _together(tables: Iterable[pa.Table]) -> pa.Table:
+    return pa.concat_tables(tables).unify_dictionaries().combine_chunks()
 
 
-def _trials(run: RunRecord) -> pd.DataFrame:
-    """Read ``trials.parquet``; its hash is checked, as every number comes from it."""
+def _frame(
+    task: str, rows: Sequence[pa.Table], runs: Sequence[RunRecord], lengths: Sequence[int]
+) -> pd.DataFrame:
+    """Make one frame of the rows of a task's runs; of each run so many, in their order."""
+    kind = find_task(task)
+    if not rows:
+        return pd.DataFrame(columns=[*columns(kind.row), "key"])
+    of_run = np.repeat(np.arange(len(runs)), lengths)
+    table = pa.concat_tables(rows).unify_dictionaries()
+    del rows
+    frame = {}
+    for name in table.column_names:
+        column = table[name].to_pandas()
+        table = table.drop_columns(name)  # so that no more than a column is there twice
+        if isinstance(column.dtype, pd.CategoricalDtype):
+            column = column.cat.reorder_categories(column.cat.categories.sort_values())
+        frame[name] = column
+    frame["key"] = _spread_out([run.folder.name for run in runs], of_run)
+    frame["map"] = _spread_out([run.known.map for run in runs], of_run)
+    frame[kind.groups[0]] = _spread_out([run.known.method for run in runs], of_run)
+    return pd.DataFrame(frame, copy=False)
+
+
+def _spread_out(texts: Sequence[str], of_run: NDArray[np.intp]) -> pd.Categorical:
+    """Give each trial the text of its run."""
+    names = sorted(set(texts))
+    place = {name: i for i, name in enumerate(names)}
+    codes = np.array([place[text] for text in texts], dtype=np.int32)
+    return pd.Categorical.from_codes(codes[of_run], names)
+
+
+def _read(run: RunRecord) -> pa.Table | InputError:
+    """Read ``trials.parquet``, or tell why it cannot be used."""
+    try:
+        require(bool(run.settings), CONFIG, "nothing", "settings")  # sections rely on them
+        return _rows(run, columns(find_task(run.known.task).row))
+    except InputError as error:
+        return error
+
+
+def _rows(run: RunRecord, kinds: Mapping[str, type]) -> pa.Table:
+    """Read a run's rows; the hash of their file is checked, as every number comes from it."""
     expected = run.known.files[TRIALS].sha256
     try:
-        found = RunFolder(run.folder).sha256(TRIALS)
+        content = (run.folder / TRIALS).read_bytes()
+        found = hashlib.sha256(content).hexdigest()
         require(found == expected, TRIALS, f"SHA-256 {found[:12]}", f"{expected[:12]}, as the "
                 "manifest says")  # fmt: skip
-        trials = pd.read_parquet(run.folder / TRIALS)
+        file = _opened(content, [name for name, kind in kinds.items() if kind is str])
+        there = set(file.schema_arrow.names)
+        # A metric that was added since, by a package perhaps, is missing; the run is still good.
+        missing = sorted(set(kinds) - there - set(metrics()))
+        require(not missing, TRIALS, f"no column {', '.join(missing)}", "all columns of a trial")
+        table = file.read([name for name in kinds if name in there], use_threads=False)
     except InputError:
         raise
     except Exception as error:  # pyarrow raises more kinds than it documents
         raise InputError(TRIALS, type(error).__name__, "readable Parquet") from error
-    # A metric that was added since, by a package perhaps, is missing; the run is still good.
-    trials = trials.assign(**{name: math.nan for name in metrics() if name not in trials})
-    types = columns(find_task(run.known.task).row)
-    missing = sorted(set(types) - set(trials.columns))
-    require(not missing, TRIALS, f"no column {', '.join(missing)}", "all columns of a trial")
-    for name, kind in types.items():
-        if kind in _CHECKS:
-            fits, what = _CHECKS[kind]
-            require(fits(trials[name]), f"{TRIALS}, {name}", "another type", what)
-    if "stage_times_s" in trials:
-        _check_stages(trials["stage_times_s"])
-    require(bool(run.settings), CONFIG, "nothing", "settings")  # sections rely on them
-    return trials.assign(key=run.folder.name)
+    arrays = [
+        _column(name, table[name], _SEED if name == "seed" else _FORMS[kind])
+        if name in there
+        else pa.array(np.full(len(table), math.nan))
+        for name, kind in kinds.items()
+    ]
+    return pa.table(arrays, list(kinds))
 
 
-def _check_stages(texts: pd.Series) -> None:
+def _opened(content: bytes, texts: Sequence[str]) -> parquet.ParquetFile:
+    """Open a file such that text is read as categories, if it has all these columns."""
     try:
-        stages = [json.loads(text) for text in texts.unique()]
+        return parquet.ParquetFile(pa.BufferReader(content), read_dictionary=texts)
+    except KeyError:
+        return parquet.ParquetFile(pa.BufferReader(content))
+
+
+def _column(name: str, column: pa.ChunkedArray, form: _Form) -> Any:
+    """Give a column the type in which it is held; raise InputError where it has another kind."""
+    where, good = f"{TRIALS}, {name}", form.fits(column.type)
+    good = good and not (types.is_boolean(column.type) and column.null_count)
+    require(good, where, "another type", form.what)
+    if name == "stage_times_s":
+        _check_stages(column.unique().to_pylist())
+    if column.type == form.held:
+        return column
+    if form.held == _TEXT:
+        return column.cast(pa.string()).dictionary_encode()
+    try:
+        return column.cast(form.held)
+    except pa.ArrowInvalid as error:
+        raise InputError(where, "another type", form.what) from error
+
+
+def _check_stages(texts: Sequence[Any]) -> None:
+    try:
+        stages = [json.loads(text) for text in texts]
     except (TypeError, ValueError) as error:
         raise InputError(f"{TRIALS}, stage_times_s", "no JSON", "stages and seconds") from error
     good = all(isinstance(each, dict) for each in stages)

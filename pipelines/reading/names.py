@@ -5,6 +5,7 @@ hold a map of one name each. In a table they would be one row.
 """
 
 import dataclasses
+import re
 from collections import defaultdict
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from pathlib import Path
@@ -16,6 +17,8 @@ from gapath.store.settings import Value, tabular
 
 NO_METHOD = ("task", "name", "map", "recorder", "seed", "trials")
 """Settings that say nothing of what is tried."""
+
+_GROUP = re.compile(r"[.[]")
 
 Trait = Callable[[RunRecord], Mapping[str, Value]]
 
@@ -38,7 +41,7 @@ def told_apart(runs: Sequence[RunRecord]) -> list[RunRecord]:
     methods = _differences(
         runs,
         lambda run: (run.known.task, run.known.method),
-        lambda run: (str(tried(run)), *contents(run.known.method_inputs)),
+        lambda run: (str(_flat(run)), *contents(run.known.method_inputs)),
         (tried, lambda run: _hashes(run.known.method_inputs)),
     )
     maps = _differences(
@@ -52,8 +55,12 @@ def told_apart(runs: Sequence[RunRecord]) -> list[RunRecord]:
 
 def tried(run: RunRecord) -> dict[str, Value]:
     """Give the settings of what a run tries, by their names, without paths and the map's."""
-    settings = tabular(without_paths(run.settings, run.known.method_inputs)).items()
-    return {key: value for key, value in settings if key.partition(".")[0] not in NO_METHOD}
+    return tabular(_flat(run))
+
+
+def _flat(run: RunRecord) -> dict[str, Value]:
+    settings = without_paths(run.settings, run.known.method_inputs).items()
+    return {key: value for key, value in settings if _GROUP.split(key, 1)[0] not in NO_METHOD}
 
 
 def _map(run: RunRecord) -> dict[str, Value]:
@@ -81,10 +88,11 @@ def _differences(
 ) -> list[dict[str, Value]]:
     """Tell for each run what sets it apart from those of another identity but the same name."""
     first: dict[Hashable, dict[Hashable, RunRecord]] = defaultdict(dict)
-    for run in runs:
-        first[name(run)].setdefault(identity(run), run)
+    pairs = [(name(run), identity(run)) for run in runs]
+    for run, (called, known) in zip(runs, pairs, strict=True):
+        first[called].setdefault(known, run)
     apart = {called: _apart(alike, traits) for called, alike in first.items()}
-    return [apart[name(run)][identity(run)] for run in runs]
+    return [apart[called][known] for called, known in pairs]
 
 
 def _apart(

@@ -2,7 +2,7 @@
 
 import os
 import platform
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from importlib.metadata import version
 from pathlib import Path
@@ -116,21 +116,28 @@ def _runs_page(
 
 def _wanted(
     module: ModuleType, modules: Sequence[ModuleType], task: str, trials: pd.DataFrame
-) -> list[tuple[str, pd.DataFrame]]:
+) -> Iterator[tuple[str, pd.DataFrame]]:
     """Give the trials of a task that a section wants, each time it is asked, and its anchor."""
     anchor = _anchor(module, task)
     if module.EXPERIMENT == ALL:
-        return [(anchor, trials)]
-    if module.EXPERIMENT is None:
+        yield anchor, trials
+    elif module.EXPERIMENT is None:
         wanted = {other.EXPERIMENT for other in modules if other.TASK in (ALL, task)}
-        others = trials[~trials["experiment"].isin(wanted - {None, ALL})]
-        return [(f"{anchor}-{name}", its) for name, its in others.groupby("experiment")]
-    return [(anchor, trials[trials["experiment"] == module.EXPERIMENT])]
+        for name in sorted(set(trials["experiment"].unique()) - wanted):
+            yield f"{anchor}-{name}", _where(trials, name)
+    else:
+        yield anchor, _where(trials, module.EXPERIMENT)
+
+
+def _where(trials: pd.DataFrame, experiment: str) -> pd.DataFrame:
+    """Give an experiment's trials; where these are all, no second copy of a million rows."""
+    mine = trials["experiment"] == experiment
+    return trials if mine.all() else trials[mine]
 
 
 def _runs_of(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> list[RunRecord]:
     """Give the runs that trials come from."""
-    used = set(trials["key"])
+    used = set(trials["key"].unique())
     return [run for run in runs if run.folder.name in used]
 
 

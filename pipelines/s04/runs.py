@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import pandas as pd
 
 from gapath.events import Settings
+from gapath.pipelines.reading.of_run import of_run
 from gapath.running.naming import Method
 from gapath.store.records import RunRecord
 
@@ -63,13 +64,8 @@ def with_form(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> pd.DataFrame:
         A copy; `preset` is the name of the planner's YAML, `short` tells whether the run's
         trials end at their first path.
     """
-    keys = [run.folder.name for run in runs]
-    forms = pd.DataFrame(
-        {
-            "preset": [run.known.preset for run in runs],
-            "planner": [planner_of(run) for run in runs],
-            "short": [bool(run.settings.get(_FORM, False)) for run in runs],
-        },
-        index=keys,
+    return trials.assign(
+        preset=of_run(trials, runs, lambda run: run.known.preset),
+        planner=of_run(trials, runs, planner_of),
+        short=of_run(trials, runs, lambda run: bool(run.settings.get(_FORM, False))),
     )
-    return trials.assign(**{name: trials["key"].map(forms[name]) for name in forms})

@@ -4,8 +4,9 @@ from collections.abc import Sequence
 
 import pandas as pd
 
+from gapath.pipelines.numbers.grouped import Spread, grouped
 from gapath.pipelines.numbers.statistics import Interval, wilson
-from gapath.pipelines.numbers.summary import Spread, summarise_by
+from gapath.pipelines.numbers.summary import summarise_by
 from gapath.pipelines.numbers.text import NOTHING, middle, number, percent, percent_range, span
 from gapath.pipelines.page.section import DRAWN, Section, Table
 from gapath.pipelines.papers.names import label, rank
@@ -92,9 +93,10 @@ def summarise_cells(trials: pd.DataFrame) -> pd.DataFrame:
         the paper's in that of the former. Missing where there are no such runs.
     """
     short, every = trials[trials["short"]], trials[~trials["short"]]
-    rows = trials[[*_BY, "preset"]].drop_duplicates()
+    rows, _ = grouped(trials, [*_BY, "preset"])
     rows = rows.sort_values(_BY, key=lambda names: names.map(lambda name: rank(str(name))))
-    few = every.groupby(_BY)["feasible"].agg(few_n="size", few_found="sum").reset_index()
+    names, groups = grouped(every, _BY)
+    few = names.assign(few_n=groups.sizes, few_found=groups.counts(every["feasible"]))
     rows = rows.merge(few, on=_BY, how="left")
     seeds = summarise_by(short if len(short) else trials, _BY)
     rows = rows.merge(seeds if len(short) else seeds.iloc[:0], on=_BY, how="left")

@@ -8,10 +8,12 @@ import pandas as pd
 
 from gapath.discovery import kinds, load
 from gapath.pipelines.numbers.behind import keys_behind
+from gapath.pipelines.numbers.grouped import Groups
+from gapath.pipelines.numbers.summary import summarise_by
 from gapath.pipelines.numbers.text import middle, number
 from gapath.pipelines.page.section import ALL, Section, Table
-from gapath.pipelines.papers.names import label, rank
-from gapath.pipelines.sweeps.cells import QUARTILES, quantiles
+from gapath.pipelines.papers.names import label
+from gapath.pipelines.reading.of_run import of_run
 from gapath.pipelines.sweeps.varied import cases_of
 from gapath.store.records import RunRecord
 from gapath.task import find_task
@@ -40,22 +42,26 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
         A row for each experiment, map and method.
     """
     task = find_task(runs[0].known.task)
-    method, cases = task.groups[0], cases_of(runs)
+    method = task.groups[0]
     modules: dict[str, Any] = {name: load("metric", name) for name in kinds("metric")}
-    trials = trials.assign(map=trials["key"].map(cases["place"]))
+
+    def measure(trials: pd.DataFrame, groups: Groups) -> dict[str, Any]:
+        succeeded = trials[task.success].to_numpy(dtype=np.bool_)
+        row: dict[str, Any] = {"problems": groups.distinct(trials["problem"])}
+        row |= {"n": groups.sizes, "succeeded": groups.counts(succeeded)}
+        for name in modules:
+            quartiles = groups.quartiles(np.where(succeeded, trials[name], np.nan))
+            row |= {f"{name}_{key}": values for key, values in quartiles._asdict().items()}
+        return row
+
     by = ["experiment", "map", "map_source", method]
-    groups = trials.groupby(by, sort=False, observed=True)
-    group, success = groups.ngroup().to_numpy(), trials[task.success].to_numpy(dtype=bool)
-    rows = groups.size().reset_index(name="n")
-    problems = cases["problem"].reindex(pd.Index(trials["key"])).groupby(group).nunique()
-    rows.insert(len(by), "problems", problems)
-    rows["succeeded"] = np.bincount(group, success, len(rows)).astype(np.int64)
-    for name in modules:
-        values = np.where(success, trials[name].to_numpy(dtype=np.float64), np.nan)
-        found = quantiles(values, group, len(rows), list(QUARTILES.values()))
-        spread = zip(QUARTILES, found, strict=True)
-        rows = rows.assign(**{f"{name}_{key}": values for key, values in spread})
-    rows = rows.sort_values(by, key=lambda names: names.map(lambda name: rank(str(name))))
+    cases = cases_of(runs)
+    places, problems = cases["place"].to_dict(), cases["problem"].to_dict()
+    trials = trials.assign(
+        map=of_run(trials, runs, lambda run: places[run.folder.name]),
+        problem=of_run(trials, runs, lambda run: problems[run.folder.name]),
+    )
+    rows = summarise_by(trials, by, measure)
     shown = [
         {
             "Experiment": row["experiment"],
@@ -65,7 +71,7 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
             "Trials": number(row["n"]),
             task.success.capitalize(): number(row["succeeded"]),
             **{
-                module.TITLE: middle(*(row[f"{name}_{key}"] for key in QUARTILES))
+                module.TITLE: middle(*(row[f"{name}_{key}"] for key in ("median", "q1", "q3")))
                 for name, module in modules.items()
             },
         }

@@ -1,19 +1,21 @@
 """Public maps that were not chosen: what becomes there of what is found on those drawn here."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+import numpy as np
 import pandas as pd
 
 from gapath.pipelines.numbers.behind import keys_behind
-from gapath.pipelines.numbers.statistics import expected_running_time, wilson
-from gapath.pipelines.numbers.summary import summarise_by
+from gapath.pipelines.numbers.grouped import Groups, grouped
+from gapath.pipelines.numbers.summary import expected, rates, rates_within, summarise_by
 from gapath.pipelines.numbers.text import NOTHING, number, percent, percent_range, span
 from gapath.pipelines.page.section import Section, Table
 from gapath.pipelines.papers.names import label
+from gapath.pipelines.reading.of_run import of_run
 from gapath.running.naming import Method, map_name
 from gapath.store.records import RunRecord
 from gapath.store.settings import nested
@@ -106,22 +108,17 @@ def by_problem(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> pd.DataFrame:
         (water of MovingAI's); `problem` says where from and to on it; `exact` tells whether the
         planner is the exact one of its family.
     """
-    keys = [run.folder.name for run in runs]
-    place = dict(zip(keys, map(_place, runs), strict=True))
-    file = {run.folder.name: run.settings.get("map.path", run.known.map) for run in runs}
-    method = dict(zip(keys, map(_method, runs), strict=True))
-    source = trials["map_source"]
+    source = trials["map_source"].astype("str")
+    file = of_run(trials, runs, lambda run: run.settings.get("map.path", run.known.map))
+    method = of_run(trials, runs, _method)
+    ends = [file, trials["start"], trials["target"]]
     return trials.assign(
-        family=[_FAMILIES[name].title if name in _FAMILIES else name for name in source],
-        place=trials["key"].map(place),
-        file=trials["key"].map(file),
-        problem=trials["key"].map(file) + trials["start"] + trials["target"],
-        method=trials["key"].map(method),
-    ).assign(
-        exact=lambda frame: [
-            name in _FAMILIES and _FAMILIES[name].exact == each
-            for name, each in zip(source, frame["method"], strict=True)
-        ]
+        family=source.replace({name: family.title for name, family in _FAMILIES.items()}),
+        place=of_run(trials, runs, _place),
+        file=file,
+        problem=trials.groupby(ends, observed=True).ngroup(),
+        method=method,
+        exact=method == source.map({name: family.exact for name, family in _FAMILIES.items()}),
     )
 
 
@@ -135,13 +132,15 @@ def _method(run: RunRecord) -> str:
     return Method(run.known.preset, {k: v for k, v in changes if (k, v) not in _OWN}).name
 
 
-def summarise_problems(trials: pd.DataFrame, unit: str) -> dict[str, float]:
-    """Summarise a planner's trials on some problems.
+def summarise_problems(trials: pd.DataFrame, groups: Groups, unit: str) -> dict[str, Any]:
+    """Summarise planners' trials on some problems.
 
     Parameters
     ----------
     trials : DataFrame
-        As `by_problem` gives them, of one planner.
+        As `by_problem` gives them.
+    groups : Groups
+        The planner and the maps of each.
     unit : str
         The column of what is independent of each other: `file`, or `problem`.
 
@@ -151,37 +150,43 @@ def summarise_problems(trials: pd.DataFrame, unit: str) -> dict[str, float]:
         maps, problems, n (trials); success, the mean of the units' rates, its interval, which
         counts units, or trials where there is one unit only, and is missing for the exact planner,
         and the least and the greatest of them; medians of seconds and of length_ratio; expected
-        seconds to a path.
+        seconds to a path. A value a group each.
     """
-    rates = trials.groupby(unit)["feasible"].mean()
-    units = len(rates) if len(rates) > 1 else len(trials)
-    chance = not trials["exact"].all()
-    low, high = wilson(float(rates.mean()), units) if chance else (math.nan, math.nan)
+    of, rate = rates_within(trials["feasible"], groups, trials[unit])
+    units = np.where(of.sizes > 1, of.sizes, groups.sizes)
+    success = rates("success", of.sums(rate), of.sizes, units)
+    exact = groups.counts(trials["exact"]) == groups.sizes
+    success |= {end: np.where(exact, np.nan, success[end]) for end in _ENDS}
+    spread = pd.Series(rate).groupby(of.of)
     seconds = trials["plan_time_s"]
     return {
-        "maps": trials["file"].nunique(),
-        "problems": trials["problem"].nunique(),
-        "n": len(trials),
-        "success": float(rates.mean()),
-        "success_low": low,
-        "success_high": high,
-        "least": float(rates.min()),
-        "greatest": float(rates.max()),
-        "seconds_median": float(seconds.median()),
-        "ert_seconds": expected_running_time(seconds.to_numpy(), trials["feasible"]),
-        "length_ratio_median": float(trials["length_ratio"].median()),
+        "maps": groups.distinct(trials["file"]),
+        "problems": groups.distinct(trials["problem"]),
+        "n": groups.sizes,
+        **success,
+        "least": spread.min(),
+        "greatest": spread.max(),
+        "seconds_median": groups.quartiles(seconds).median,
+        "ert_seconds": _expected_seconds(trials, groups),
+        "length_ratio_median": groups.quartiles(trials["length_ratio"]).median,
     }
+
+
+_ENDS = "success_low", "success_high"
+
+
+def _expected_seconds(trials: pd.DataFrame, groups: Groups) -> Any:
+    return expected(groups.sums(trials["plan_time_s"]), groups.counts(trials["feasible"]))
 
 
 def _summaries(trials: pd.DataFrame, by: list[str], unit: str) -> pd.DataFrame:
     """Summarise each planner within groups, and hold it against the exact one of its group."""
     rows = summarise_by(trials, [*by, "method"], partial(summarise_problems, unit=unit))
-    exact = trials[trials["exact"]].groupby(by)
-    least = {
-        key: expected_running_time(group["plan_time_s"].to_numpy(), group["feasible"])
-        for key, group in exact
-    }
-    times = [least.get(tuple(row), math.nan) for row in rows[by].to_numpy()]
+    exact = trials[trials["exact"]]
+    names, groups = grouped(exact, by)
+    taken = names.itertuples(index=False, name=None), _expected_seconds(exact, groups)
+    least = dict(zip(*taken, strict=True))
+    times = [least.get(row, math.nan) for row in rows[by].itertuples(index=False, name=None)]
     return rows.assign(times_exact=rows["ert_seconds"] / times)
 
 
@@ -200,7 +205,7 @@ def _families(trials: pd.DataFrame) -> Table:
             "By map, %": span(100 * row["least"], 100 * row["greatest"]),
             "Faster than A*: maps": number(row["faster"]),
         }
-        for _, row in rows.iterrows()
+        for row in rows.to_dict("records")
     ]
     return Table(
         "unseen",
@@ -224,7 +229,7 @@ def _maps(trials: pd.DataFrame) -> Table:
             "Problems": number(row["problems"]),
             **_cells(row),
         }
-        for _, row in rows.iterrows()
+        for row in rows.to_dict("records")
     ]
     return Table(
         "unseen_maps",
@@ -237,7 +242,7 @@ def _maps(trials: pd.DataFrame) -> Table:
     )
 
 
-def _cells(row: pd.Series) -> dict[str, str]:
+def _cells(row: Mapping[Any, Any]) -> dict[str, str]:
     ratio = row["times_exact"]
     longer = round(100 * (row["length_ratio_median"] - 1), 2) + 0.0  # lengths have six digits
     return {

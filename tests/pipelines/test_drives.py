@@ -12,6 +12,7 @@ from gapath.pipelines.kg18.drives import table_calls as table_drive_calls
 from gapath.pipelines.kg18.drives import table_choices as table_drive_choices
 from gapath.pipelines.kg18.drives import table_classes as table_drive_classes
 from gapath.pipelines.numbers.drive_summary import rate, summarise_drives
+from gapath.pipelines.numbers.grouped import Groups
 from gapath.pipelines.numbers.statistics import wilson
 from gapath.pipelines.numbers.summary import over_instances
 from gapath.pipelines.report.report import make_report
@@ -87,15 +88,22 @@ def test_only_runs_of_the_same_setting_supersede_each_other(tmp_path, make_drive
     assert len(collect(tmp_path).trials["drive"]) == (5 if settings == ("a", "b") else 3)
 
 
+def only(summary, frame, *names):
+    """Give the row that a frame of one group comes to."""
+    found = summary(frame, Groups.one(len(frame)), *names)
+    return {name: values[0] for name, values in found.items()}
+
+
 def test_a_summary_worked_by_hand():
-    row = summarise_drives(
+    row = only(
+        summarise_drives,
         drives_of(
             outcome=["reached", "returned", "reached", "overran"],
             reached=[True, False, True, False],
             steps=[100, 60, 120, 2000],
             steps_ratio=[1.0, math.nan, 1.2, math.nan],
             calls_a=[0, 9, 0, 3],
-        )
+        ),
     )
     assert [row[name] for name in ("n", "reached", "returned", "overran")] == [4, 2, 1, 1]
     assert (row["returned_low"], row["returned_high"]) == wilson(0.25, 4)
@@ -109,7 +117,7 @@ def test_drives_that_never_left_are_told():
     drives = drives_of(
         outcome=["returned"] * 3 + ["reached"], steps=[4, 1, 9, 5], stands=[4, 1, 8, 5]
     )
-    row = summarise_drives(drives)
+    row = only(summarise_drives, drives)
     assert row["never_left"] == 2
     assert rate(row, "returned").endswith("; 2 never left")
     assert "never left" not in rate(row, "reached") + rate(row, "overran")
@@ -117,16 +125,17 @@ def test_drives_that_never_left_are_told():
 
 def test_who_draws_no_random_number_has_no_interval():
     alike = drives_of(steps=[100] * 5, evaluations=0)
-    assert math.isnan(summarise_drives(alike)["reached_low"])
-    assert summarise_drives(alike.assign(evaluations=5))["reached_low"] == wilson(1.0, 5)[0]
+    assert math.isnan(only(summarise_drives, alike)["reached_low"])
+    drawn = only(summarise_drives, alike.assign(evaluations=5))
+    assert drawn["reached_low"] == wilson(1.0, 5)[0]
     changing = alike.assign(steps=[100, 100, 101, 99, 100])  # the map differed by trial
-    assert summarise_drives(changing)["reached_low"] == wilson(1.0, 5)[0]
+    assert only(summarise_drives, changing)["reached_low"] == wilson(1.0, 5)[0]
 
 
 @given(st.lists(st.tuples(st.integers(0, 4), st.booleans()), min_size=1, max_size=30))
 def test_over_instances_weighs_instances_alike(rows):
     frame = pd.DataFrame(rows, columns=["map_instance", "reached"])
-    row = over_instances(frame, "reached", "rate")
+    row = only(over_instances, frame, "reached", "rate")
     rates = [
         np.mean([reached for other, reached in rows if other == instance])
         for instance in {instance for instance, _ in rows}
@@ -234,7 +243,7 @@ def test_classes_count_instances_and_name_those_that_failed():
         reached=[True] * 5 + [False] * 3,
         outcome=["reached"] * 5 + ["returned"] * 3,
     )
-    row = table_drive_classes.summarise_class(mine)
+    row = only(table_drive_classes.summarise_class, mine)
     assert row["reached"] == pytest.approx(0.5)
     assert (row["reached_low"], row["reached_high"]) == pytest.approx(wilson(0.5, 3))
     assert (row["instances"], row["n"], row["always"], row["never"]) == (3, 8, 1, 1)

@@ -108,9 +108,10 @@ def test_a_yaml_that_was_edited_in_between_is_another_method(gapath, tmp_path):
         (folder / "my_ga.yaml").write_text(text.format(population))
         run = ("--config-dir", str(tmp_path / "conf"), "planner=my_ga", "map=kg18_test1")
         assert gapath(*run, "recorder=none", "trials=2")[0] == 0
-    trials = read_trials(find_runs(tmp_path / "out")).trials["plan"]
-    assert sorted(trials["planner"].unique()) == ["my_ga[population=150]", "my_ga[population=20]"]
-    assert sorted(trials["planner.population"].unique()) == [20, 150]
+    trials, _, runs = read_trials(find_runs(tmp_path / "out"))
+    names = ["my_ga[population=150]", "my_ga[population=20]"]
+    assert sorted(trials["plan"]["planner"].unique()) == names
+    assert sorted(run.settings["planner.population"] for run in runs) == [20, 150]
 
 
 def test_an_edited_file_that_a_method_reads_is_another_run(gapath, tmp_path):

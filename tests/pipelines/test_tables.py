@@ -4,6 +4,7 @@ import pandas as pd
 import pytest
 
 from gapath.pipelines.kg18 import table1, table_classes
+from gapath.pipelines.numbers.grouped import Groups
 from gapath.pipelines.numbers.statistics import wilson
 from gapath.pipelines.numbers.summary import summarise, summarise_by
 from gapath.pipelines.page.section import Table
@@ -25,15 +26,21 @@ def trials(**columns):
     return frame.assign(**{k: v for k, v in defaults.items() if k not in frame})
 
 
+def only(summary, frame):
+    """Give the row that a frame of one group comes to."""
+    return {name: values[0] for name, values in summary(frame, Groups.one(len(frame))).items()}
+
+
 def test_a_summary_worked_by_hand():
-    row = summarise(
+    row = only(
+        summarise,
         trials(
             feasible=[True, True, True, False],
             epochs=[1, 2, 3, 500],
             evaluations=[40, 70, 100, 15010],
             plan_time_s=[0.1, 0.2, 0.3, 1.4],
             optimality_ratio=[1.0, 1.2, 1.1, math.nan],
-        )
+        ),
     )
     assert (row["n"], row["found"], row["success"]) == (4, 3, 0.75)
     assert (row["success_low"], row["success_high"]) == wilson(0.75, 4)
@@ -45,13 +52,13 @@ def test_a_summary_worked_by_hand():
 
 
 def test_nothing_found_is_expected_never():
-    row = summarise(trials(feasible=[False, False], optimality_ratio=math.nan))
+    row = only(summarise, trials(feasible=[False, False], optimality_ratio=math.nan))
     assert row["ert_evaluations"] == row["ert_seconds"] == math.inf
     assert math.isnan(row["optimality_ratio_median"])
 
 
 def test_a_graph_search_has_no_epochs_and_no_interval():
-    row = summarise(trials(epochs=[0, 0], evaluations=0))
+    row = only(summarise, trials(epochs=[0, 0], evaluations=0))
     for name in ("epochs_median", "evaluations_q1", "ert_evaluations", "success_low"):
         assert math.isnan(row[name])
     assert row["ert_seconds"] == 0.5
@@ -116,7 +123,7 @@ def test_classes_count_instances_not_trials():
         feasible=[True, True, True, True, True, False, False, False],
         epochs=[1, 1, 1, 1, 5, 9, 9, 9],
     )
-    row = table_classes.summarise_class(mine)
+    row = only(table_classes.summarise_class, mine)
     assert row["success"] == pytest.approx((1 + 0.5 + 0) / 3)
     assert (row["success_low"], row["success_high"]) == pytest.approx(wilson(0.5, 3))
     assert (row["instances"], row["n"], row["always"], row["never"]) == (3, 8, 1, 1)

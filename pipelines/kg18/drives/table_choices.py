@@ -8,6 +8,7 @@ from typing import Any
 import pandas as pd
 
 from gapath.events import Settings
+from gapath.pipelines.numbers.grouped import Groups
 from gapath.pipelines.numbers.summary import over_instances
 from gapath.pipelines.numbers.text import middle, number, percent, percent_range
 from gapath.pipelines.page.section import Section, Table
@@ -103,7 +104,7 @@ def _table(trials: pd.DataFrame, name: str, source: str, methods: Mapping[str, M
     for navigator, group in groups.items():
         known = methods[navigator]
         changes = varied(known.preset, known.changes)
-        reached = over_instances(group, "reached", "reached")
+        reached = over_instances(group, Groups.one(len(group)), "reached", "reached")
         del reached["always"], reached["never"]
         change = (_rates(group) - reference).dropna()
         ratio = group.groupby("map_instance")["steps_ratio"].median()
@@ -111,7 +112,7 @@ def _table(trials: pd.DataFrame, name: str, source: str, methods: Mapping[str, M
             "navigator": navigator,
             "decision": "; ".join(changes) or "as described",
             "value": "; ".join(dict.fromkeys(changes.values())),
-            **reached,
+            **{key: values[0].item() for key, values in reached.items()},
             "better": int((change > 0).sum()),
             "worse": int((change < 0).sum()),
             "calls_a": group["calls_a"].mean(),

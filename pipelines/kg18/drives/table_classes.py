@@ -1,10 +1,12 @@
 """KG18's unknown maps as classes: drives over many instances, and where they fail."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import pandas as pd
 
 from gapath.pipelines.numbers.drive_summary import summarise_drives
+from gapath.pipelines.numbers.grouped import Groups
 from gapath.pipelines.numbers.summary import over_instances, summarise_by
 from gapath.pipelines.numbers.text import middle, number, percent, percent_range
 from gapath.pipelines.page.section import RECONSTRUCTED, Section, Table
@@ -57,13 +59,15 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
     )
 
 
-def summarise_class(trials: pd.DataFrame) -> dict[str, float]:
-    """Summarise a navigator's drives over the instances of a class.
+def summarise_class(trials: pd.DataFrame, groups: Groups) -> dict[str, Any]:
+    """Summarise navigators' drives over the instances of classes.
 
     Parameters
     ----------
     trials : DataFrame
         One row a drive.
+    groups : Groups
+        The class and navigator of each.
 
     Returns
     -------
@@ -71,10 +75,10 @@ def summarise_class(trials: pd.DataFrame) -> dict[str, float]:
         What `over_instances` gives, reached being the rate; quartiles of steps / shortest and of
         the seconds.
     """
-    row = over_instances(trials, "reached", "reached")
+    row = over_instances(trials, groups, "reached", "reached")
     for name, column in (("steps_ratio", "steps_ratio"), ("seconds", "compute_time_s")):
-        for key, level in (("q1", 0.25), ("median", 0.5), ("q3", 0.75)):
-            row[f"{name}_{key}"] = trials[column].quantile(level)
+        quartiles = groups.quartiles(trials[column])._asdict()
+        row |= {f"{name}_{key}": values for key, values in quartiles.items()}
     return row
 
 
