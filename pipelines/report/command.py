@@ -5,8 +5,12 @@ import shlex
 from collections.abc import Iterable
 
 _LIST = re.compile(r"\[[^][]*\]")
+_QUOTING = re.compile(r"""['"\\]""")
 _SEVERAL = re.compile(r"[,'\"\s]")
 """A value with these outside of a list would read as several in a sweep, or as part of one."""
+
+_MOST = 200
+"""A page shows so many commands of a section."""
 
 
 def as_sweeps(commands: Iterable[str]) -> list[str]:
@@ -21,18 +25,25 @@ def as_sweeps(commands: Iterable[str]) -> list[str]:
     -------
     list of str
         For each experiment ``gapath -m key=value,value ...`` if its jobs are all combinations of
-        some values; else its commands, each once.
+        some values; else its commands, each once, of very many the first and how many follow.
     """
     by_experiment: dict[str, list[str]] = {}
     for command in sorted(set(commands)):
         words = [word for word in command.split() if word.startswith("experiment=")]
         by_experiment.setdefault(" ".join(words), []).append(command)
-    return [line for _, jobs in sorted(by_experiment.items()) for line in _as_sweep(jobs)]
+    lines = [line for _, jobs in sorted(by_experiment.items()) for line in _as_sweep(jobs)]
+    more = len(lines) - _MOST
+    return lines if more <= 0 else [*lines[:_MOST], f"# and {more} more: each run's manifest.json"]
+
+
+def _words(command: str) -> list[str]:
+    """Split a command as a shell does, which takes a while where it may have quotes."""
+    return shlex.split(command) if _QUOTING.search(command) else command.split()
 
 
 def _as_sweep(commands: list[str]) -> list[str]:
     try:
-        jobs = [shlex.split(command) for command in commands]
+        jobs = [_words(command) for command in commands]
     except ValueError:  # a manifest was edited: quotes without an end
         return commands
     words, combinations = [], 1

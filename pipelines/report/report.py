@@ -149,7 +149,8 @@ def _parts(
     made = (module.section(trials, runs) if len(trials) else None) or []
     parts = []
     for i, section in enumerate(made if isinstance(made, list) else [made]):
-        mine = [run for run in runs if not section.runs or run.folder.name in section.runs]
+        about = set(section.runs)
+        mine = [run for run in runs if not about or run.folder.name in about]
         commands = as_sweeps(run.known.command for run in mine)
         place = f"{anchor}-{i + 1}" if i else anchor
         parts.append(Part(place, section, commands, _group(module)))

@@ -173,7 +173,14 @@ def test_flipped_rows_are_noticed(run):
     [
         (lambda trials: trials.drop(columns="epochs"), "no column epochs"),
         (lambda trials: trials.assign(cost="much"), "cost"),
+        (lambda trials: trials.assign(cost=None), "cost"),
         (lambda trials: trials.assign(feasible=1.5), "feasible"),
+        (lambda trials: trials.assign(feasible=None), "feasible"),
+        (lambda trials: trials.assign(epochs=1.5), "epochs"),
+        (lambda trials: trials.assign(seed=-1), "seed"),
+        (lambda trials: trials.assign(status=1), "status"),
+        (lambda trials: trials.assign(stage_times_s="{"), "stage_times_s"),
+        (lambda trials: trials.assign(stage_times_s="[1]"), "stage_times_s"),
     ],
 )
 def test_rows_of_another_shape_are_named(run, spoil, named):
@@ -184,6 +191,50 @@ def test_rows_of_another_shape_are_named(run, spoil, named):
     frame, skipped = plans(run.parent.parent)
     assert frame.empty
     assert named in skipped[0].reason
+
+
+def test_types_that_hold_the_same_are_read_alike(run):
+    """Whole numbers as decimals, text as categories: who writes rows may choose."""
+    import pandas as pd
+
+    path = run / "trials.parquet"
+    rows = pd.read_parquet(path)
+    before, _ = plans(run.parent.parent)
+    rows.astype({"epochs": float, "map": "category", "cost": "float32"}).to_parquet(path)
+    sign(run)
+    after, skipped = plans(run.parent.parent)
+    assert skipped == []
+    pd.testing.assert_frame_equal(before, after)
+
+
+def test_text_is_held_as_categories_in_the_order_of_the_alphabet(outputs):
+    frame, _ = plans(outputs)
+    for name in ("key", "map", "planner", "experiment", "status"):
+        categories = list(frame[name].cat.categories)
+        assert categories == sorted(set(frame[name]))
+
+
+def test_of_many_runs_the_damaged_ones_are_named_and_each_task_has_its_trials(
+    tmp_path, make_run, make_drive_run
+):
+    """More than are put together at a time."""
+    keys = [f"{i:03}" for i in range(300)]
+    for key in keys:
+        make_run(tmp_path, "plan", "kg18_test1", "ga1", n=1 + int(key) % 3, log=False, key=key,
+                 seed=int(key))  # fmt: skip
+    make_drive_run(tmp_path, "drives", "kg18_map1", "kg18", n=4)
+    damaged = keys[7::50]
+    for key in damaged:
+        flip(tmp_path / "plan" / key / "trials.parquet")
+    trials, skipped, runs = collect(tmp_path)
+    assert [each.run for each in skipped] == [f"plan/{key}" for key in damaged]
+    assert all("SHA-256" in each.reason for each in skipped)
+    sizes = trials["plan"].groupby("key", observed=True)["seed"].agg(["size", "min", "max"])
+    assert list(sizes.index) == [key for key in keys if key not in damaged]
+    assert list(sizes["size"]) == [1 + int(key) % 3 for key in sizes.index]
+    assert list(sizes["min"]) == list(sizes["max"]) == [int(key) for key in sizes.index]
+    assert len(trials["drive"]) == 4
+    assert len(runs) == len(sizes) + 1
 
 
 def test_a_file_that_is_no_parquet_is_named_and_the_others_are_read(run, make_run):
