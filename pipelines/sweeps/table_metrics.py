@@ -22,6 +22,8 @@ TASK = ALL
 EXPERIMENT = ALL
 ORDER = 100
 
+_CELL = ("median", "q1", "q3")
+
 _ROWS = 1000
 """A page shows so many."""
 
@@ -51,7 +53,7 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
         row |= {"n": groups.sizes, "succeeded": groups.counts(succeeded)}
         for name in modules:
             quartiles = groups.quartiles(np.where(succeeded, trials[name], np.nan))
-            row |= {f"{name}_{key}": values for key, values in quartiles._asdict().items()}
+            row |= {f"{name}_{key}": getattr(quartiles, key) for key in _CELL}
         return row
 
     by = ["experiment", "map", "map_source", method]
@@ -71,7 +73,7 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
             "Trials": number(row["n"]),
             task.success.capitalize(): number(row["succeeded"]),
             **{
-                module.TITLE: middle(*(row[f"{name}_{key}"] for key in ("median", "q1", "q3")))
+                module.TITLE: middle(*(row[f"{name}_{key}"] for key in _CELL))
                 for name, module in modules.items()
             },
         }
