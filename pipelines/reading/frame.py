@@ -137,7 +137,7 @@ def _named(runs: Sequence[RunRecord]) -> list[RunRecord]:
 
 
 def _own(run: RunRecord) -> dict[str, Any]:
-    known = {"experiment": run.folder.parent.name}
+    known: dict[str, Any] = {"experiment": run.folder.parent.name}
     if run.manifest:
         known = {**vars(run.manifest), "code": run.manifest.versions.get("code")}
     return {**known, "state": str(run.state), "date": run.date, "fault": run.fault or None}

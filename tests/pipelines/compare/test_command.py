@@ -35,8 +35,9 @@ def test_an_analysis_written_by_itself_agrees(sweep, tmp_path, capsys):
         frame = pd.read_parquet(folder / "trials.parquet")
         frames.append(frame.assign(group=settings["planner"]["population"]))
     trials = pd.concat(frames)
-    wide = trials.pivot_table(index=["map", "seed", "trial"], columns="group", dropna=False,
-                              values=["feasible", "evaluations", "plan_time_s", "cost"])  # fmt: skip
+    names = ["feasible", "evaluations", "plan_time_s", "cost"]
+    by = ["map", "seed", "trial"]
+    wide = trials.pivot_table(index=by, columns="group", dropna=False, values=names)
     found = wide["feasible"].astype(bool)
     cost = wide["cost"].where(found)
     theirs = {}

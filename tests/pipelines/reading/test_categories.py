@@ -9,7 +9,7 @@ from gapath.pipelines.report import report as report_module
 from gapath.pipelines.report.report import make_report
 from gapath.store.records import find_runs
 
-from .conftest import record_of
+from ..conftest import record_of
 
 
 def as_text(frame):

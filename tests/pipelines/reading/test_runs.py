@@ -9,7 +9,7 @@ from gapath.pipelines.reading.logs import events_of, read_logs, run_start
 from gapath.store.records import find_runs
 from gapath.store.status import RunState
 
-from .conftest import collect, sign, write_status
+from ..conftest import collect, sign, write_status
 
 
 def plans(folder):

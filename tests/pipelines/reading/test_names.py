@@ -9,7 +9,7 @@ from gapath.pipelines.reading.collect import read_trials
 from gapath.pipelines.reading.names import told_apart
 from gapath.store.records import find_runs
 
-from .conftest import record_of
+from ..conftest import record_of
 
 EMPTY = "type octile\nheight 8\nwidth 30\nmap\n" + ("." * 30 + "\n") * 8
 WALL = EMPTY.replace("." * 30, "." * 15 + "@" + "." * 14, 7)
