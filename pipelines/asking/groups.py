@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from gapath.pipelines.numbers.statistics import wilson
 from gapath.store.results import Results, exact_sum
@@ -44,24 +45,39 @@ def grouped(frame: pd.DataFrame, came: Sequence[Results], by: Sequence[str]) -> 
     number = frame.groupby(list(by), dropna=False, sort=True).ngroup().to_numpy()
     order = np.argsort(number, kind="stable")
     groups = np.split(order, np.flatnonzero(np.diff(number[order])) + 1) if len(order) else []
-    names = list(dict.fromkeys(name for each in came for name in each.sums))
     trials = np.array([each.trials for each in came])
     succeeded = np.array([each.succeeded for each in came])
-    sums = {name: np.array([each.sums.get(name, 0.0) for each in came]) for name in names}
-    counts = {name: trials * [name in each.sums for each in came] for name in names}
-    for i, each in enumerate(came):
-        for name, defined in each.counts.items():
-            counts[name][i] = defined
+    names, sums, counts = _tables(came, trials)
     rows = []
     for group in groups:
-        total = {name: exact_sum(sums[name][group]) for name in names}
-        count = {name: int(counts[name][group].sum()) for name in names}
+        total = {name: exact_sum(sums[group, i]) for i, name in enumerate(names)}
+        count = dict(zip(names, counts[group].sum(axis=0).tolist(), strict=True))
         figures = _figures(int(trials[group].sum()), int(succeeded[group].sum()), total, count)
         means = {name: total[name] / count[name] for name in names if count[name]}
         rows.append(means | {"runs": len(group)} | figures)
     keys = frame[list(by)].iloc[[group[0] for group in groups]].reset_index(drop=True)
     columns = dict.fromkeys([*FIGURES, *names])
     return keys.join(pd.DataFrame(rows, columns=[name for name in columns if name not in by]))
+
+
+def _tables(
+    came: Sequence[Results], trials: NDArray[np.int64]
+) -> tuple[list[str], NDArray[np.float64], NDArray[np.int64]]:
+    """Give the columns of trials, and of each run a row of sums and of how many are defined."""
+    alike: dict[tuple[str, ...], list[int]] = {}
+    for i, each in enumerate(came):
+        alike.setdefault(tuple(each.sums), []).append(i)
+    place = {name: i for i, name in enumerate(dict.fromkeys(name for key in alike for name in key))}
+    sums = np.zeros((len(came), len(place)))
+    counts = np.zeros(sums.shape, dtype=np.int64)
+    for key, runs in alike.items():
+        cells = np.ix_(runs, [place[name] for name in key])
+        sums[cells] = [list(came[i].sums.values()) for i in runs]
+        counts[cells] = trials[runs, None]
+    for i, each in enumerate(came):
+        for name, defined in each.counts.items():
+            counts[i, place[name]] = defined
+    return list(place), sums, counts
 
 
 def _figures(
