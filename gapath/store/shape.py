@@ -32,7 +32,10 @@ def shaped(kind: Any, content: Any, where: str) -> Any:
     InputError
         If something is missing or of another type: names the place.
     """
-    hint = _hint(kind)
+    return _shaped(_hint(kind), content, where)
+
+
+def _shaped(hint: "_Hint", content: Any, where: str) -> Any:
     if hint.shape is None or (content is None and NoneType in hint.plain):
         if type(content) not in hint.plain:
             right = ", ".join("null" if each is NoneType else each.__name__ for each in hint.plain)
@@ -43,12 +46,12 @@ def shaped(kind: Any, content: Any, where: str) -> Any:
     if inner is not None:
         if inner.shape is None and set(map(type, content.values())).issubset(inner.plain):
             return content
-        return {n: shaped(inner.kind, item, f"{where}, {n}") for n, item in content.items()}
+        return {n: _shaped(inner, item, f"{where}, {n}") for n, item in content.items()}
     made = {}
     for name, part in hint.parts.items():
         value = made[name] = content.get(name)
         if type(value) not in part.plain:
-            made[name] = shaped(part.kind, value, f"{where}, {name}")
+            made[name] = _shaped(part, value, f"{where}, {name}")
     return hint.shape(**made)
 
 
@@ -58,7 +61,6 @@ _ITEMS = ""
 class _Hint(NamedTuple):
     """A type hint, taken apart: ten thousand manifests ask for the same."""
 
-    kind: Any
     shape: Any
     """Its dataclass or Mapping; None without one."""
     plain: tuple[type, ...]
@@ -76,4 +78,4 @@ def _hint(kind: Any) -> _Hint:
     if get_origin(shape) is Mapping:
         parts = {_ITEMS: get_args(shape)[1]}
     plain = tuple(each for each in several if each not in shapes)
-    return _Hint(kind, shape, plain, {name: _hint(part) for name, part in parts.items()})
+    return _Hint(shape, plain, {name: _hint(part) for name, part in parts.items()})
