@@ -139,7 +139,7 @@ _COLUMNS = (
 """Of a list of runs, and which hold numbers."""
 
 _ROW = Markup(
-    '<tr><th scope="row" class="head"><a href="{}">{}</a></th><td class="text">{}</td>'
+    '<tr><th scope="row" class="head own"><a href="{}">{}</a></th><td class="text">{}</td>'
     '<td class="text">{}</td><td>{}</td><td class="text">{}</td><td>{}</td><td>{}</td>'
     '<td data-order="{}">{}</td><td class="text">{}</td><td class="text">{}</td></tr>'
 )

@@ -3,6 +3,7 @@
   "use strict";
   document.documentElement.classList.add("js");
   const FILTERED = 8; // rows, of which more have a field to filter by
+  const PAGED = 500; // rows, of which more are shown a page at a time: laying out thousands takes seconds
   const make = (tag, properties, ...children) => {
     const element = Object.assign(document.createElement(tag), properties);
     element.append(...children);
@@ -44,37 +45,33 @@
   function place(table) {
     const box = table.closest(".scroll");
     const heads = Number(table.dataset.heads);
-    box.classList.add("placed");
     const widths = [...table.tHead.rows[0].cells].slice(0, heads).map((cell) => cell.getBoundingClientRect().width);
     let from = heads - 1;
     let width = widths[from];
     while (from > 0 && width + widths[from - 1] <= 0.65 * box.clientWidth) width += widths[--from];
     let left = 0;
-    const lefts = widths.map((own, i) => (i < from ? null : (left += own) - own));
-    const key = lefts.join();
-    if (table.dataset.lefts === key) return;
-    table.dataset.lefts = key;
-    for (const row of [...table.tHead.rows, ...table.tBodies[0].rows]) {
-      for (let i = 0; i < heads && i < row.cells.length; i++) {
-        row.cells[i].classList.toggle("stays", i >= from);
-        row.cells[i].classList.toggle("last", i === heads - 1);
-        row.cells[i].style.left = i >= from ? `${lefts[i]}px` : "";
-      }
-    }
+    widths.forEach((own, i) => {
+      table.style.setProperty(`--left-${i + 1}`, i < from ? "auto" : `${left}px`);
+      if (i >= from) left += own;
+    });
+    box.classList.add("placed");
   }
 
   function sortable(table) {
     const box = table.closest(".scroll");
     const count = table.tBodies[0].rows.length;
+    box.hidden = true; // nothing is laid out until all is done
     const api = new DataTable(table, {
-      paging: false, info: false, autoWidth: false, order: [], orderClasses: false, typeDetect: false,
-      layout: { topStart: null, topEnd: null, bottomStart: null, bottomEnd: null },
+      paging: count > PAGED, pageLength: PAGED / 2, info: false, autoWidth: false, order: [], orderClasses: false, typeDetect: false,
+      layout: { topStart: null, topEnd: null, bottomStart: count > PAGED ? "paging" : null, bottomEnd: null },
       columns: [...table.tHead.rows[0].cells].map((cell) => ({
         type: cell.dataset.kind, orderSequence: ["asc", "desc", ""],
       })),
       language: { zeroRecords: "No row matches." },
     });
+    box.hidden = false;
     api.on("draw", () => group(table));
+    if (count > PAGED) group(table);
     if (count <= FILTERED) return;
     const field = make("input", { type: "search" });
     const shown = make("span", { className: "soft" });
@@ -107,7 +104,7 @@
     const head = table.createTHead().insertRow();
     const numbers = names.map((_, i) => rows.some((row) => row[i] !== "") && rows.every((row) => !Number.isNaN(Number(row[i]))));
     names.forEach((name, i) => {
-      const cell = make("th", { scope: "col", className: i ? "" : "head" }, name);
+      const cell = make("th", { scope: "col", className: i ? "" : "head own" }, name);
       cell.dataset.kind = numbers[i] ? "number" : "text";
       head.append(cell);
     });
@@ -115,7 +112,7 @@
     for (const row of rows) {
       const line = body.insertRow();
       row.forEach((value, i) => {
-        const cell = i ? line.insertCell() : line.appendChild(make("th", { scope: "row", className: "head" }));
+        const cell = i ? line.insertCell() : line.appendChild(make("th", { scope: "row", className: "head own" }));
         if (!numbers[i]) cell.classList.add("text");
         cell.textContent = value === "" ? "\u2013" : numbers[i] ? String(Number(Number(value).toPrecision(5))) : value;
         if (numbers[i]) cell.dataset.order = value;

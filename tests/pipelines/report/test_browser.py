@@ -10,8 +10,11 @@ import shutil
 from itertools import pairwise
 from urllib.parse import unquote, urlsplit
 
+import pandas as pd
 import pytest
 
+from gapath.pipelines.page.page import Part, render
+from gapath.pipelines.page.section import Section, Table
 from gapath.pipelines.report.report import make_report
 
 BROWSER = next(
@@ -206,6 +209,27 @@ def test_a_filter_leaves_the_rows_that_match(opened):
     assert rows.count() == whole
     few = page.locator("#kg18-drives-table")
     assert few.locator("table").count() and not few.locator("input").count()
+
+
+def test_a_large_table_shows_a_page_of_rows_at_a_time(opened, tmp_path):
+    shown = pd.DataFrame({
+        "Map": [f"m{i // 10}" for i in range(600)],
+        "Planner": [f"p{i % 10}" for i in range(600)],
+        "Time": [str(i * 7919 % 600) for i in range(600)],
+    })  # fmt: skip
+    part = Part("large", Section("Large", tables=(Table("t", "T.", shown, shown),)), [])
+    path = tmp_path / "bench.html"
+    path.write_text(render("bench.html.j2", parts=[part], machine={}, quick=False))
+    page = opened(path=path)
+    rows = page.locator("#large tbody tr")
+    assert rows.count() == 250
+    sort(page, 3, "ascending", "#large")
+    assert texts(page, 3, "#large") == [str(i) for i in range(250)]
+    page.locator(".dt-paging-button", has_text="3").press("Enter")
+    page.locator("#large tbody tr:nth-child(1)", has_text="500").wait_for()
+    assert texts(page, 3, "#large") == [str(i) for i in range(500, 600)]
+    page.locator("#large input").fill('"m7" "p3"')
+    assert rows.count() == 1
 
 
 @SIZES
