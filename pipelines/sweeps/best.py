@@ -1,6 +1,7 @@
 """Which of a sweep's methods is best on each map, and whether the next can be told from it."""
 
 from collections.abc import Iterator
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -91,6 +92,7 @@ def _together(view: View) -> pd.DataFrame:
     everywhere = groups.size() == len(view.sweep.places)
     spent = [f"{effort.name}_total" for effort in view.efforts]
     sums = groups[["n", "succeeded", *spent]].sum()
+    sums["runs"] = groups["runs"].agg(lambda runs: tuple(sorted(set(chain.from_iterable(runs)))))
     rows = groups.first().assign(**sums)[everywhere].reset_index()
     rows["success"] = rows["succeeded"] / rows["n"]
     low, high = wilson_of(rows["success"].to_numpy(), rows["n"].to_numpy())
@@ -134,12 +136,12 @@ def _sentence(view: View, best: Best) -> str:
     told = "can be told from it" if best.apart else "cannot be told from it"
     more = f", nor can {others} of the {len(best.pairs) - 1} after it" if others else ""
     return (
-        f"{what}: {named(view, best.row)}, {shown(best)}{unit}. "
+        f"{what}: {named(view, best.row)}, {value_of(best)}{unit}. "
         f"The next, {named(view, best.next)}, {told}{more}."
     )
 
 
-def shown(best: Best) -> str:
+def value_of(best: Best) -> str:
     """Write the best one's number, with its interval."""
     if best.effort is None:
         return rate(best.row)
@@ -175,7 +177,7 @@ def best_table(view: View, found: list[Best]) -> list[Table]:
                 "Map": place,
                 "By": by,
                 "Best": named(view, best.row),
-                "Its number": shown(best),
+                "Its number": value_of(best),
                 "Next": named(view, best.next),
                 "Difference": _difference(best, pair),
                 "Told apart": "yes" if best.apart else "no",
@@ -206,7 +208,9 @@ def best_table(view: View, found: list[Best]) -> list[Table]:
         f"interval; by tests that pair trials of one problem and seed, Holm's correction over the "
         f"best {_HELD}. Those not told from it are as good as far as these trials say."
     )
-    return [Table(f"{view.stem}_best", caption, pd.DataFrame(data), pd.DataFrame(lines))]
+    behind = tuple(best.row["runs"] for best in found)
+    name, shown = f"{view.stem}_best", pd.DataFrame(lines)
+    return [Table(name, caption, pd.DataFrame(data), shown, heads=3, runs=behind)]
 
 
 def _difference(best: Best, pair: Pair | None) -> str:

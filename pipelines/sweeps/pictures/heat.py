@@ -21,7 +21,7 @@ from gapath.pipelines.sweeps.view import View, text
 
 PANELS = 6
 """So many are drawn."""
-_WRITTEN = 8
+_WRITTEN = 10
 """Numbers are written into cells where there are no more columns than this."""
 _TICKS = 10
 _NEVER = "#4d4d4d"

@@ -8,6 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
+from gapath.pipelines.page.section import Section
+from gapath.pipelines.sweeps import table
+
 from ..conftest import record_of
 from ..synthetic import METRICS, NOTHING
 
@@ -94,3 +97,19 @@ def grid(**settings: Iterable[Any]) -> list[dict[str, Any]]:
     for name, values in settings.items():
         every = [{**each, f"planner.{name}": value} for each in every for value in values]
     return every
+
+
+def sections(tried: Iterable[Tried], make: Any = planned) -> list[Section]:
+    """Make the sections of what was tried."""
+    return table.section(*make(tried))
+
+
+def names_of(section: Section) -> list[str]:
+    """Give the names of a section's tables and figures."""
+    return [each.name for each in (*section.tables, *section.figures)]
+
+
+def by_name(section: Section, end: str) -> Any:
+    """Give the table or figure whose name ends so."""
+    (found,) = [each for each in (*section.tables, *section.figures) if each.name.endswith(end)]
+    return found

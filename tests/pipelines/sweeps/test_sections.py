@@ -2,38 +2,15 @@
 
 import math
 
-import numpy as np
 import pytest
 
 from gapath.pipelines.numbers.statistics import wilson
 from gapath.pipelines.report.report import make_report
 from gapath.pipelines.sweeps import table
-from gapath.pipelines.sweeps.pictures import curves, heat, many, shares
 from gapath.tasks.plan import Task as PlanTask
 
-from .made import Tried, driven, grid, planned
+from .made import Tried, by_name, driven, grid, names_of, planned, sections
 from .test_varied import CASES, ONE_AT_A_TIME, ga
-
-
-def sections(tried, make=planned):
-    return table.section(*make(tried))
-
-
-def names_of(section):
-    return [each.name for each in (*section.tables, *section.figures)]
-
-
-def by_name(section, end):
-    (found,) = [each for each in (*section.tables, *section.figures) if each.name.endswith(end)]
-    return found
-
-
-@pytest.fixture
-def undrawn(monkeypatch):
-    """Lay figures out, but do not draw them, which takes most of the time."""
-    for module in (curves, heat, many, shares):
-        monkeypatch.setattr(module, "render", lambda canvas: (b"svg", b"png"))
-
 
 POPULATIONS = ga(grid(population=[20, 50, 80]))
 
@@ -88,16 +65,6 @@ def test_whatever_was_tried_has_its_place(tried, change):
             assert len(each.alt) > 40 and each.caption.endswith(".")
     names = [name for section in made for name in names_of(section)]
     assert len(names) == len(set(names))
-
-
-@pytest.mark.parametrize("change", [{"success": 0.0}, {"n": 1, "success": 1.0}])
-@pytest.mark.parametrize("case", ["null", "two, some missing", "scattered", "methods"])
-def test_where_none_or_each_succeeded_is_drawn(case, change):
-    tried = [each._replace(**change) for each in CASES[case][0]]
-    for section in sections(tried):
-        assert section.figures
-        for each in section.figures:
-            assert each.svg.startswith(b"<?xml") and each.png.startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize(
@@ -165,71 +132,6 @@ def test_a_row_shows_its_numbers():
     assert row["Expected evaluations"].startswith("414 (")  # (8 x 100 + 28) / 2
     assert row["Median time, ms"] == "4.5"
     assert row["Above optimal, %"] == "10"
-
-
-@pytest.mark.usefixtures("undrawn")
-def test_the_best_is_told_from_the_next_by_enough_trials():
-    tried = [
-        Tried(changes=changes, n=200, success=rate)
-        for changes, rate in zip(grid(population=[20, 50, 80]), (0.2, 0.9, 0.6), strict=True)
-    ]
-    (section,) = sections(tried)
-    first, second = by_name(section, "best").data.to_dict("records")
-    assert (first["by"], first["method"]) == ("success", "ga1[population=50]")
-    assert (first["value"], first["next"]) == (0.9, "ga1[population=80]")
-    assert first["difference"] == pytest.approx(0.3)
-    assert first["told_apart"] and first["alike"] == 0 and first["p_adjusted"] < 1e-6
-    assert (second["by"], second["method"]) == ("expected_evaluations", "ga1[population=50]")
-    assert "population 50, 90 (85.1 to 93.4) %" in section.text[1]
-    assert section.text[1].endswith("The next, population 80, can be told from it.")
-
-
-@pytest.mark.usefixtures("undrawn")
-def test_alike_ones_cannot_be_told_apart():
-    (section,) = sections(ga(grid(population=[20, 50, 80]), n=50))
-    row = by_name(section, "best").data.iloc[0]
-    assert not row["told_apart"] and (row["alike"], row["held"]) == (2, 2)
-    assert section.text[1].endswith("cannot be told from it, nor can 1 of the 1 after it.")
-
-
-@pytest.mark.usefixtures("undrawn")
-def test_the_best_of_several_maps_stands_in_a_row_each_and_one_for_all():
-    tried = [Tried(name, map=f"kg18_test{i}") for name in ("ga1", "ga2") for i in (1, 2)]
-    (section,) = sections(tried)
-    rows = by_name(section, "best").data
-    assert list(zip(rows["place"], rows["by"], strict=True)) == [
-        ("kg18_test1", "success"), ("kg18_test1", "expected_evaluations"),
-        ("kg18_test2", "success"), ("kg18_test2", "expected_evaluations"), ("all", "success"),
-    ]  # fmt: skip
-    assert len(section.text) == 1
-
-
-def test_combinations_that_were_not_tried_or_never_succeed_are_marked():
-    pairs = grid(population=[20, 50, 80], control_points=[5, 6])
-    tried = [Tried(changes=each, success=0.5 * (i > 0)) for i, each in enumerate(pairs[:5])]
-    (section,) = sections(tried)
-    success, expected = by_name(section, "success"), by_name(section, "expected")
-    assert "1 combination was not tried and is hatched" in success.caption
-    assert "in 1 no trial succeeded" in expected.caption
-    for figure in (success, expected):
-        assert b"not tried" in figure.svg
-    assert "never" in heat_text(expected)
-
-
-def heat_text(figure):
-    """Give what stands in comments of an SVG: its texts, drawn as paths."""
-    lines = figure.svg.decode().splitlines()
-    return " ".join(line for line in lines if line.strip().startswith("<!--"))
-
-
-def test_a_heat_map_has_each_value_at_its_place():
-    pairs = grid(population=[20, 50, 80], control_points=[5, 6])
-    tried = [Tried(changes=each, success=0.1 * i) for i, each in enumerate(pairs)]
-    trials, runs = planned(tried)
-    (view,) = table.views_of(trials, runs)
-    down, across = view.sweep.settings
-    found = heat.values_of(view.cells, curves.quantities(view)[0], across, down)
-    assert found == pytest.approx(np.array([[0, 20, 40], [10, 30, 50]]))
 
 
 @pytest.mark.usefixtures("undrawn")
@@ -317,23 +219,6 @@ def test_long_tables_are_cut_and_say_so(monkeypatch):
     assert "the page has 5 of 8 rows" in made.caption
 
 
-def test_importance_and_effects_of_three_settings():
-    pairs = grid(population=[20, 50, 80], control_points=[4, 5, 6], mixing=[0.2, 0.4, 0.6])
-    tried = [Tried(changes=each, n=20, success=each["planner.population"] / 100) for each in pairs]
-    (section,) = sections(tried)
-    assert "What matters, most first: population." in section.remarks[0]
-    assert "out of bag" in section.remarks[0]
-    assert "population, Map 3 (reconstructed): 20 to 80." in by_name(section, "effects").alt
-    assert by_name(section, "importance").alt.startswith("Bars: population ")
-
-
-def test_curves_evenly_chosen_are_drawn():
-    (view,) = table.views_of(*planned(ga(grid(population=range(10, 610, 10)), n=2)))
-    figure = shares.shares(view)
-    assert "8 of 60 values, evenly chosen" in figure.caption
-    assert figure.alt.count("population") == 0 and figure.alt.count(" %") == 8
-
-
 def test_the_report_has_a_section_for_each_experiment(tmp_path, make_run, make_drive_run):
     for planner in ("ga1", "astar"):
         make_run(tmp_path, "first", "kg18_test1", planner, n=3, log=False)
@@ -357,21 +242,3 @@ def test_infinite_effort_is_shown_with_the_least_it_can_be():
     least = 104.5 / wilson(0, 10)[1]
     assert shown == f"\N{INFINITY} (at least {least:.0f})"
     assert math.isinf(by_name(section, "population").data["expected_evaluations"].iloc[0])
-
-
-@pytest.mark.usefixtures("undrawn")
-def test_many_maps_are_drawn_together():
-    tried = [
-        Tried(name, map=f"world{i}", success=rate)
-        for name, rate in (("ga1", 0.5), ("ga2", 1.0))
-        for i in range(8)
-    ]
-    (section,) = sections(tried)
-    rows = by_name(section, "planner")
-    assert len(rows.data) == 2 + 16
-    assert list(rows.shown["Map"].iloc[:2]) == ["All 8 maps"] * 2
-    assert list(rows.shown["Planner"].iloc[:2]) == ["GA 2", "GA 1"]
-    assert list(rows.data["n"].iloc[:2]) == [80, 80]
-    assert [len(keys) for keys in rows.runs[:3]] == [8, 8, 1]
-    assert section.text[1].startswith("Most often found: GA 2, 100 (95.4 to 100.0) %.")
-    assert "GA 1 50 %" in by_name(section, "effort").alt
