@@ -5,6 +5,7 @@ import json
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -120,6 +121,7 @@ def read_trials(runs: Iterable[RunRecord]) -> Collected:
     for task, counts in lengths.items():
         mine = [run for run in used if run.known.task == task]
         trials[task] = _frame(task, rows.pop(task), mine, counts)
+    pa.default_memory_pool().release_unused()
     return Collected(trials, sorted(skipped), used)
 
 
@@ -162,12 +164,19 @@ def _read(run: RunRecord) -> pa.Table | InputError:
     """Read ``trials.parquet``, or tell why it cannot be used."""
     try:
         require(bool(run.settings), CONFIG, "nothing", "settings")  # sections rely on them
-        return _rows(run, columns(find_task(run.known.task).row))
+        return _rows(run, _forms(run.known.task))
     except InputError as error:
         return error
 
 
-def _rows(run: RunRecord, kinds: Mapping[str, type]) -> pa.Table:
+@lru_cache
+def _forms(task: str) -> dict[str, _Form]:
+    """Give for each column of a task's rows how it is held."""
+    kinds = columns(find_task(task).row).items()
+    return {name: _SEED if name == "seed" else _FORMS[kind] for name, kind in kinds}
+
+
+def _rows(run: RunRecord, forms: Mapping[str, _Form]) -> pa.Table:
     """Read a run's rows; the hash of their file is checked, as every number comes from it."""
     expected = run.known.files[TRIALS].sha256
     try:
@@ -175,23 +184,25 @@ def _rows(run: RunRecord, kinds: Mapping[str, type]) -> pa.Table:
         found = hashlib.sha256(content).hexdigest()
         require(found == expected, TRIALS, f"SHA-256 {found[:12]}", f"{expected[:12]}, as the "
                 "manifest says")  # fmt: skip
-        file = _opened(content, [name for name, kind in kinds.items() if kind is str])
+        file = _opened(content, [name for name, form in forms.items() if form.held == _TEXT])
         there = set(file.schema_arrow.names)
         # A metric that was added since, by a package perhaps, is missing; the run is still good.
-        missing = sorted(set(kinds) - there - set(metrics()))
+        missing = sorted(set(forms) - there - set(metrics()))
         require(not missing, TRIALS, f"no column {', '.join(missing)}", "all columns of a trial")
-        table = file.read([name for name in kinds if name in there], use_threads=False)
+        table = file.read([name for name in forms if name in there], use_threads=False)
     except InputError:
         raise
     except Exception as error:  # pyarrow raises more kinds than it documents
         raise InputError(TRIALS, type(error).__name__, "readable Parquet") from error
+    if "stage_times_s" in forms:
+        _check_stages(table["stage_times_s"])
     arrays = [
-        _column(name, table[name], _SEED if name == "seed" else _FORMS[kind])
+        _column(name, table[name], form)
         if name in there
         else pa.array(np.full(len(table), math.nan))
-        for name, kind in kinds.items()
+        for name, form in forms.items()
     ]
-    return pa.table(arrays, list(kinds))
+    return pa.table(arrays, list(forms))
 
 
 def _opened(content: bytes, texts: Sequence[str]) -> parquet.ParquetFile:
@@ -204,13 +215,11 @@ def _opened(content: bytes, texts: Sequence[str]) -> parquet.ParquetFile:
 
 def _column(name: str, column: pa.ChunkedArray, form: _Form) -> Any:
     """Give a column the type in which it is held; raise InputError where it has another kind."""
-    where, good = f"{TRIALS}, {name}", form.fits(column.type)
-    good = good and not (types.is_boolean(column.type) and column.null_count)
-    require(good, where, "another type", form.what)
-    if name == "stage_times_s":
-        _check_stages(column.unique().to_pylist())
-    if column.type == form.held:
+    where, kind = f"{TRIALS}, {name}", column.type
+    good = not (types.is_boolean(kind) and column.null_count)
+    if kind == form.held and good:
         return column
+    require(good and form.fits(kind), where, "another type", form.what)
     if form.held == _TEXT:
         return column.cast(pa.string()).dictionary_encode()
     try:
@@ -219,9 +228,9 @@ def _column(name: str, column: pa.ChunkedArray, form: _Form) -> Any:
         raise InputError(where, "another type", form.what) from error
 
 
-def _check_stages(texts: Sequence[Any]) -> None:
+def _check_stages(column: pa.ChunkedArray) -> None:
     try:
-        stages = [json.loads(text) for text in texts]
+        stages = [json.loads(text) for text in column.unique().to_pylist()]
     except (TypeError, ValueError) as error:
         raise InputError(f"{TRIALS}, stage_times_s", "no JSON", "stages and seconds") from error
     good = all(isinstance(each, dict) for each in stages)

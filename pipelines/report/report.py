@@ -1,5 +1,6 @@
 """The report: every table and figure as files, and all of them on one page."""
 
+import gc
 import os
 import platform
 from collections.abc import Callable, Iterator, Sequence
@@ -51,6 +52,13 @@ def make_report(outputs: Path, folder: Path) -> tuple[list[Path], list[Skipped]]
     InputError
         If there is no such folder, or neither a run nor benchmarks in it that can be used.
     """
+    try:
+        return _make(outputs, folder)
+    finally:
+        gc.unfreeze()
+
+
+def _make(outputs: Path, folder: Path) -> tuple[list[Path], list[Skipped]]:
     files, skipped = make_bench_page(outputs / "bench")
     beside: Callable[[Path], list[Path]] | None = None
     try:
@@ -78,7 +86,9 @@ def _runs_page(
     What writes the pages of single runs beside it is given, too.
     """
     runs = find_runs(outputs)
+    gc.freeze()  # else the collector walks through all of them again and again
     trials, unusable, used = read_trials(runs)
+    gc.freeze()
     count = sum(map(len, trials.values()))
     first = f"; {unusable[0].run}: {unusable[0].reason}" if unusable else ""
     require(count > 0, outputs, f"{len(runs)} runs of which none can be used"

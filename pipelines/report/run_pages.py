@@ -1,6 +1,5 @@
 """A small page for each run, and lists of runs, beside the report."""
 
-import gc
 import hashlib
 import os
 import shlex
@@ -90,13 +89,9 @@ def write_run_pages(
     written = [folder / "page.css", folder / "page.js"]
     for path, content in zip(written, (style(), script()), strict=True):
         write_whole(path, content.encode())
-    gc.freeze()  # else the collector walks through all records again and again: half of the time
-    try:
-        for name, text in chain(_pages(folder, runs, trials, rates), _lists(runs, rates, lists)):
-            (folder / name).write_bytes(text.encode())
-            written.append(folder / name)
-    finally:
-        gc.unfreeze()
+    for name, text in chain(_pages(folder, runs, trials, rates), _lists(runs, rates, lists)):
+        (folder / name).write_bytes(text.encode())
+        written.append(folder / name)
     for path in set(folder.glob("*.html")) - set(written):
         with path.open("rb") as file:
             ours = _MARK in file.read(500)
@@ -183,7 +178,7 @@ def _pages(
 ) -> Iterator[tuple[str, str]]:
     """Make the page of each run."""
     page = template("run.html.j2")
-    lines = {key: text for task, frame in trials.items() for key, text in _lines(task, frame)}
+    rows = {key: table for task, frame in trials.items() for key, table in _rows(task, frame)}
     drawn = newest_logs(runs)
     here = folder.resolve()
     places: dict[Path, str] = {}
@@ -210,7 +205,7 @@ def _pages(
             no_stills=no_stills,
             shown=min(known.trials, MOST_TRIALS),
             trials=known.trials,
-            lines=lines[key],
+            lines=_lines(rows[key]),
             settings=[(name, _value(value)) for name, value in run.settings.items()],
             provenance=_provenance(run),
         )
@@ -271,8 +266,8 @@ def _provenance(run: RunRecord) -> list[tuple[str, str]]:
     ]
 
 
-def _lines(task: str, trials: pd.DataFrame) -> Iterator[tuple[str, str]]:
-    """Write the first trials of each run as CSV, without what is the same in all of every run."""
+def _rows(task: str, trials: pd.DataFrame) -> Iterator[tuple[str, pa.Table]]:
+    """Give the first trials of each run, without what is the same in all of every run."""
     if trials.empty:
         return
     keys, names = pd.factorize(trials["key"])
@@ -281,15 +276,21 @@ def _lines(task: str, trials: pd.DataFrame) -> Iterator[tuple[str, str]]:
         trials, keys = trials.iloc[order], keys[order]
     starts = np.searchsorted(keys, np.arange(len(names) + 1))
     first = np.arange(len(keys)) - starts[keys] < MOST_TRIALS
-    trials, keys = trials[first], keys[first]
-    starts = np.searchsorted(keys, np.arange(len(names) + 1))
+    if not first.all():
+        trials, keys = trials[first], keys[first]
+        starts = np.searchsorted(keys, np.arange(len(names) + 1))
     same_run = keys[1:] == keys[:-1]
     known = [name for name in columns(find_task(task).row) if name != "trial"]
-    codes = {name: pd.factorize(trials[name])[0] for name in known}
-    varied = [name for name, code in codes.items() if (np.diff(code)[same_run] != 0).any()]
+    codes = ((name, pd.factorize(trials[name])[0]) for name in known)
+    varied = [name for name, code in codes if (np.diff(code)[same_run] != 0).any()]
     table = pa.Table.from_pandas(trials[["trial", *varied]], preserve_index=False)
     for name, begin, end in zip(names, starts[:-1], starts[1:], strict=True):
-        stream = pa.BufferOutputStream()
-        options = pa.csv.WriteOptions(quoting_header="none")
-        pa.csv.write_csv(table.slice(begin, end - begin), stream, options)
-        yield str(name), stream.getvalue().to_pybytes().decode()
+        yield str(name), table.slice(begin, end - begin)
+
+
+def _lines(table: pa.Table) -> str:
+    """Write rows as CSV."""
+    stream = pa.BufferOutputStream()
+    pa.csv.write_csv(table, stream, pa.csv.WriteOptions(quoting_header="none"))
+    text: str = stream.getvalue().to_pybytes().decode()
+    return text
