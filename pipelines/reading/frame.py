@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import pandas as pd
+from tqdm import tqdm
 
 from gapath.errors import InputError
 from gapath.pipelines.reading.counted import superseded
@@ -54,7 +55,8 @@ def run_frame(runs: Sequence[RunRecord]) -> pd.DataFrame:
 
 def described(runs: Sequence[RunRecord]) -> tuple[pd.DataFrame, list[Results | None]]:
     """Make a table of runs as `run_frame` does, and give what each of them came to."""
-    pairs = [_with_results(run) for run in runs]
+    older = any(run.manifest and not run.manifest.results for run in runs)  # which takes longer
+    pairs = [_with_results(run) for run in tqdm(runs, "runs", disable=None if older else True)]
     came = [results for _, results in pairs]
     settings = [_settings(run) for run, _ in pairs]
     runs = _named([run for run, _ in pairs])

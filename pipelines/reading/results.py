@@ -25,12 +25,16 @@ def results_of(run: RunRecord) -> Results:
     """
     if run.known.results is not None:
         return run.known.results
-    import pandas as pd
+    from pyarrow import parquet
 
-    from gapath.task import find_task, results  # which imports the kernels' compiler
+    from gapath.task import columns, find_task, results  # which imports the kernels' compiler
 
     task = find_task(run.known.task)
     try:
-        return results(task, pd.read_parquet(run.folder / TRIALS))
+        file = parquet.ParquetFile(run.folder / TRIALS)
+        there = set(file.schema_arrow.names)
+        numbers = [name for name, kind in columns(task.row).items() if kind is not str]
+        rows = file.read([name for name in numbers if name in there], use_threads=False)
+        return results(task, {name: rows[name].to_numpy() for name in rows.column_names})
     except Exception as error:  # pyarrow raises more kinds than it documents
         raise InputError(TRIALS, type(error).__name__, "readable Parquet") from error
