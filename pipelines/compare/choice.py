@@ -134,7 +134,10 @@ def _choice(
     within = {setting for each in mine.values() for setting in _varying(each)}
     also = tuple(setting for setting in varying if setting in within)
     method = by in ("method", "preset")
-    beside = () if method else tuple(setting for setting in varying if setting not in within)
+    asked = " ".join(names) if by is None else ""
+    beside = tuple(
+        setting for setting in varying if not (method or setting in within or setting in asked)
+    )
     trials = trials[trials["key"].isin(list(settings))]
     keys = trials["key"]
     trials = trials.assign(

@@ -88,7 +88,7 @@ def shown(comparison: Comparison, by: str) -> pd.DataFrame:
     """
     quantity = comparison.quantity
     against = {pair.second: pair for pair in comparison.against_best()}
-    ranked = any(each.rank is not None for each in comparison.estimates)
+    ranked = sum(each.rank is not None for each in comparison.estimates) > 2
     rows = []
     for each in comparison.estimates:
         value, interval = _own(each, quantity)

@@ -1,5 +1,6 @@
 """Tests of two groups of trials, and the sizes of their differences: SciPy's and statsmodels'."""
 
+import gc
 import math
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -66,7 +67,11 @@ def holm(ps: Sequence[float | None]) -> list[float | None]:
     from statsmodels.stats.multitest import multipletests
 
     known = [p for p in ps if p is not None]
-    adjusted = iter(multipletests(known, method="holm")[1] if known else ())
+    gc.freeze()  # it collects garbage, which takes long where many modules are loaded
+    try:
+        adjusted = iter(multipletests(known, method="holm")[1] if known else ())
+    finally:
+        gc.unfreeze()
     return [None if p is None else float(next(adjusted)) for p in ps]
 
 
