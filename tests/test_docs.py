@@ -22,6 +22,7 @@ from gapath.commands import log as log_cli
 from gapath.commands import run as cli
 from gapath.mapio.movingai import read_scenario
 from gapath.pipelines.asking import command as asking
+from gapath.pipelines.compare import command as comparing
 from gapath.pipelines.report import cli as report_cli
 from gapath.planning.path import octile_length
 from gapath.running import config
@@ -205,6 +206,8 @@ def check_log(words):
 def check_report(words):
     if words[:1] == ["runs"]:
         check_parser(asking.parser(), words[1:])
+    elif words[:1] == ["compare"]:
+        check_parser(comparing.parser(), words[1:])
     else:
         check_parser(report_cli._report_parser(), words)
 
