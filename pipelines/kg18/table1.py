@@ -24,7 +24,7 @@ _EFFORT: dict[str, tuple[str, Callable[[float], float]]] = {
 """The column of each quantity, and its number there."""
 
 
-def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
+def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
     """Make the section of KG18 Table 1.
 
     Parameters
@@ -36,10 +36,12 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
 
     Returns
     -------
-    Section
-        Success and epochs beside the paper's, and what a path costs.
+    Section or None
+        Success and epochs beside the paper's, and what a path costs; None of other instances.
     """
     canonical = trials[trials["map_instance"] == 0]
+    if canonical.empty:
+        return None
     by = ["map", "map_source", "planner"]
     rows = summarise_by(canonical, by)
     tables = _beside_the_paper(rows), _effort(rows)

@@ -51,6 +51,10 @@ def drives_of(**columns):
     return frame.assign(**{k: v for k, v in defaults.items() if k not in frame})
 
 
+def test_other_instances_alone_make_no_table_of_drives():
+    assert table_drives.section(drives_of(map_instance=[3, 5]), []) is None
+
+
 def test_plans_and_drives_do_not_mix(tmp_path, make_run, make_drive_run):
     make_run(tmp_path, "mine", "kg18_test1", "ga1", n=3, log=False)
     make_drive_run(tmp_path, "mine", "kg18_map1", "kg18", n=4)

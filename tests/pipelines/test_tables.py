@@ -116,6 +116,10 @@ def test_other_instances_stay_out_of_table1():
     assert list(table1.section(mine, []).tables[0].data["n"]) == [2]
 
 
+def test_other_instances_alone_make_no_table1():
+    assert table1.section(trials(map_instance=[3, 5], map="kg18_test1"), []) is None
+
+
 def test_classes_count_instances_not_trials():
     mine = trials(
         map="kg18_test3",

@@ -17,7 +17,7 @@ EXPERIMENT = "drives"
 ORDER = 60
 
 
-def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
+def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
     """Make the section on drives through KG18's unknown maps.
 
     Parameters
@@ -29,10 +29,13 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
 
     Returns
     -------
-    Section
-        How the drives ended and what they took, for each map and navigator.
+    Section or None
+        How the drives ended and what they took, for each map and navigator; None of other
+        instances.
     """
     trials = trials[trials["map_instance"] == 0]
+    if trials.empty:
+        return None
     by = ["map", "map_source", "navigator"]
     rows = summarise_by(trials, by, summarise_drives)
     tables = _outcomes(rows), _effort(rows)

@@ -44,7 +44,7 @@ def test_a_page_says_what_was_run_and_what_it_came_from(tmp_path, make_run):
     found = 100 * pd.read_parquet(run / "trials.parquet")["feasible"].mean()
     assert said["state"] == "done" and said["seed"] == "7" and said["trials"] == "20"
     assert said["succeeded"] == f"{found:.1f}".removesuffix(".0") + " %"
-    assert said["map"] == "Map 3, instance 2" and said["start, target"] == "(1, 6), (22, 6)"
+    assert said["map"] == "Map 3, instance 2" and said["start, target"] == "(0, 0), (9, 9)"
     assert said["changed: planner.population"] == "40" and said["changed: planner.vln"] == "null"
     assert said["map&#39;s content, SHA-256"] == known.map_digest
     assert said["maps/a.map, SHA-256"] == "ab" * 32 and said["late.txt, SHA-256"] == "cd" * 32
