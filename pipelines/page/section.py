@@ -22,6 +22,7 @@ import pandas as pd
 from gapath.discovery import entry_points, imported
 from gapath.errors import require, require_all
 from gapath.pipelines.numbers.behind import keys_behind
+from gapath.pipelines.numbers.text import number
 
 ALL = "*"
 """What a section declares that wants the trials of every task, or of every experiment."""
@@ -40,9 +41,13 @@ DRAWN = (
 )
 
 
+MOST_ROWS = 1000
+"""Rows of a table that people are shown."""
+
+
 @dataclass(frozen=True)
 class Table:
-    """A table of the report.
+    """A table of the report; of very many rows people are shown the first, and told so.
 
     Parameters
     ----------
@@ -79,6 +84,11 @@ class Table:
     def __post_init__(self) -> None:
         given, rows = len(self.runs), len(self.shown)
         require(given in (0, rows), f"table {self.name}, runs", given, f"one entry a row, {rows}")
+        if rows > MOST_ROWS:
+            said = f"The first {number(MOST_ROWS)} of {number(rows)} rows; the CSV file has all."
+            shorter = {"caption": f"{self.caption} {said}", "shown": self.shown.head(MOST_ROWS)}
+            for name, value in (*shorter.items(), ("runs", self.runs[:MOST_ROWS])):
+                object.__setattr__(self, name, value)
 
     def with_runs(self, trials: pd.DataFrame, by: Sequence[str]) -> "Table":
         """Lead each row to the runs behind it.
@@ -95,7 +105,7 @@ class Table:
         Table
             With `runs`.
         """
-        return replace(self, runs=keys_behind(trials, by, self.data))
+        return replace(self, runs=keys_behind(trials, by, self.data.head(len(self.shown))))
 
     def csv(self) -> str:
         """Write the numbers as CSV."""

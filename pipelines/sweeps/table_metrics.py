@@ -7,7 +7,6 @@ import numpy as np
 import pandas as pd
 
 from gapath.discovery import kinds, load
-from gapath.pipelines.numbers.behind import keys_behind
 from gapath.pipelines.numbers.grouped import Groups
 from gapath.pipelines.numbers.summary import summarise_by
 from gapath.pipelines.numbers.text import middle, number
@@ -23,9 +22,6 @@ EXPERIMENT = ALL
 ORDER = 100
 
 _CELL = ("median", "q1", "q3")
-
-_ROWS = 1000
-"""A page shows so many."""
 
 
 def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
@@ -77,18 +73,15 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section:
                 for name, module in modules.items()
             },
         }
-        for row in rows.head(_ROWS).to_dict("records")
+        for row in rows.to_dict("records")
     ]
-    more = f" The page has {_ROWS} of {len(rows)} rows, the CSV has all."
     table = Table(
         f"metrics_{task.name}",
-        f"Median (quartiles) of each metric over the trials that succeeded ({task.success})."
-        + (more if len(rows) > _ROWS else ""),
+        f"Median (quartiles) of each metric over the trials that succeeded ({task.success}).",
         rows,
         pd.DataFrame(shown),
         heads=3,
-        runs=keys_behind(trials, by, rows.head(_ROWS)),
-    )
+    ).with_runs(trials, by)
     return Section(
         title=f"Metrics of paths: {task.name}",
         tables=(table,),

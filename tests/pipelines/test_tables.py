@@ -147,6 +147,20 @@ def test_the_three_forms_of_a_table():
     assert latex.isascii()
 
 
+def test_of_very_many_rows_people_are_shown_the_first_and_told_so():
+    data = pd.DataFrame({"planner": [f"p{i}" for i in range(2500)], "n": 1})
+    frame = data.assign(key=[f"k{i}" for i in range(2500)])
+    table = Table("name", "All of them.", data, data.astype(str)).with_runs(frame, ["planner"])
+    assert len(table.csv().splitlines()) == 2501
+    assert len(table.shown) == len(table.runs) == 1000
+    assert table.runs[-1] == ("k999",)
+    said = "All of them. The first 1000 of 2500 rows; the CSV file has all."
+    assert table.caption.replace("\N{THIN SPACE}", "") == said
+    assert "p999" in table.markdown() and "p1000" not in table.markdown() + table.latex()
+    small = Table("name", "All of them.", data[:1000], data[:1000].astype(str))
+    assert small.caption == "All of them."
+
+
 def test_every_latex_table_is_ascii(outputs):
     frame = collect(outputs).trials["plan"]
     for module in (table1, table_classes):

@@ -77,6 +77,13 @@ def test_commands_that_are_no_sweep_stay_as_they_are(commands):
     assert as_sweeps(commands) == sorted(commands)
 
 
+def test_of_very_many_commands_the_first_are_shown():
+    jobs = [f"gapath map=m{i} seed={i}" for i in range(1000)]
+    lines = as_sweeps(jobs)
+    assert lines[:-1] == sorted(jobs)[:200]
+    assert lines[-1] == "# and 800 more: each run's manifest.json"
+
+
 def test_lists_and_variables_are_values_of_a_sweep():
     ends = product(("[0,1]", "[0,2]"), ("a", "b"))
     jobs = [f"gapath 'map.start={start}' 'map.path=${{oc.env:X}}/{name}'" for start, name in ends]
