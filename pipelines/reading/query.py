@@ -61,9 +61,8 @@ def quoted(text: str, columns: Collection[str], where: str) -> str:
     known = {column.lower(): column for column in columns}
     groups = {column.partition(".")[0] for column in known if "." in column}
     data, parts, done = text.encode(), [], 0
-    names = (duckdb.token_type.identifier, duckdb.token_type.keyword)
-    for place, kind in duckdb.tokenize(text):  # places are counted in bytes
-        found = _DOTTED.match(data[place:].decode()) if kind in names and place >= done else None
+    for place, _ in duckdb.tokenize(text):  # words, quoted texts, comments; places are in bytes
+        found = _DOTTED.match(data[place:].decode()) if place >= done else None
         if found is None:
             continue
         word = found.group()
@@ -130,7 +129,6 @@ def connect(files: Sequence[str] = ()) -> Any:
     connection = duckdb.connect(":memory:")
     connection.execute(f"set allowed_paths = [{', '.join(map(literal, files))}]")
     connection.execute("set enable_external_access = false")
-    connection.execute("set python_enable_replacements = false")  # no variables of this program
     connection.execute("set lock_configuration = true")
     return connection
 

@@ -64,3 +64,14 @@ def test_a_run_does_without_pandas(tmp_path):
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert "pandas" not in done.stdout.split()
     assert list(tmp_path.glob("plan/*/trials.parquet"))
+
+
+def test_a_file_speaks_of_its_columns_once():
+    rows = [Row("a", 2**64 - 1, 0, True, 1.0).__dict__] * 100
+    data = parquet(COLUMNS, rows, {"planner.population": 40, "map.start": "[0, 1]"})
+    about = pq.ParquetFile(io.BytesIO(data)).metadata
+    columns = [about.row_group(0).column(i) for i in range(about.num_columns)]
+    assert not any(column.is_stats_set for column in columns)
+    assert about.metadata is None  # no second schema
+    kinds = [str(kind) for kind in pq.read_table(io.BytesIO(data)).to_pandas().dtypes]
+    assert kinds == ["str", "uint64", "int64", "bool", "float64", "int64", "str"]

@@ -4,7 +4,10 @@ import shutil
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 import pytest
+
+from gapath.store.rows import written
 
 from ..conftest import summed
 from .conftest import rows_of
@@ -47,7 +50,9 @@ def test_columns_that_some_runs_lack_are_null_and_types_are_kept(tmp_path, make_
     summed(lacks)
     fails = make_run(tmp_path, "e", "kg18_test4", "ga2", n=3, log=False, key="fails", seed=1)
     rows = pd.read_parquet(fails / "trials.parquet")
-    rows.assign(length=np.nan, **{"planner.x": 2}).to_parquet(fails / "trials.parquet")
+    rows = rows.assign(length=np.nan, **{"planner.x": 2})
+    table = pa.table({name: column.to_numpy() for name, column in rows.items()})  # NaN, not null
+    (fails / "trials.parquet").write_bytes(written(table))
     summed(fails)
     made = rows_of(
         ask,
