@@ -8,6 +8,7 @@ import dataclasses
 import re
 from collections import defaultdict
 from collections.abc import Callable, Hashable, Mapping, Sequence
+from functools import cache
 from pathlib import Path
 
 from gapath.running.naming import Method, with_changes
@@ -60,7 +61,12 @@ def tried(run: RunRecord) -> dict[str, Value]:
 
 def _flat(run: RunRecord) -> dict[str, Value]:
     settings = without_paths(run.settings, run.known.method_inputs).items()
-    return {key: value for key, value in settings if _GROUP.split(key, 1)[0] not in NO_METHOD}
+    return {key: value for key, value in settings if _is_tried(key)}
+
+
+@cache  # of ten thousand runs the settings have few names
+def _is_tried(key: str) -> bool:
+    return _GROUP.split(key, 1)[0] not in NO_METHOD
 
 
 def _map(run: RunRecord) -> dict[str, Value]:
