@@ -251,6 +251,8 @@ def test_the_menu_leads_to_a_section_and_marks_it(opened, size):
         assert -1 <= box["y"] < size["height"]
         assert page.locator(".menu [aria-current]").count() == 1
         assert summary.bounding_box()["y"] >= -1, "the menu stays"
+    page.evaluate("document.getElementById('kg18-figure-paths').scrollIntoView()")
+    page.locator(".menu a[href='#kg18-figure-paths'][aria-current]").wait_for(state="attached")
 
 
 def test_a_figure_enlarges_and_gives_the_focus_back(opened):
@@ -330,4 +332,5 @@ def test_without_scripts_everything_is_there(opened, report):
     assert page.locator(".menu a[href='#kg18-table1']").is_visible()
     assert page.locator("figure img").first.is_visible()
     page.goto(page.locator(f"{TABLE} tbody a").first.evaluate("link => link.href"))
-    assert page.locator("#trials pre").inner_text().startswith("trial,")
+    trials = page.locator("#trials pre")
+    assert trials.is_visible() and trials.inner_text().startswith("trial,")
