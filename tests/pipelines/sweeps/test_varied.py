@@ -145,6 +145,8 @@ def test_what_all_methods_change_is_no_part_of_their_names():
     (sweep,) = sweeps_of([Tried("ga1", common), Tried("astar", common)])
     assert sweep.fixed == (("corner_cutting", "forbid"),)
     assert list(sweep.methods["planner"]) == ["ga1", "astar"]
+    (sweep,) = sweeps_of(ga([{**common, **each} for each in grid(population=[20, 50, 80])]))
+    assert sweep.fixed == (("corner_cutting", "forbid"),)
 
 
 def test_settings_that_changed_together_are_named():
