@@ -9,6 +9,9 @@ A section is one file of pipelines, ``table*.py`` or ``figure_*.py``, that offer
 - ``ORDER``: its place on the page, a number;
 - ``section(trials, runs)``: a frame of trials and the runs they come from -> `Section`, or several
   in a list, or None where there is nothing to show.
+
+Text in the frame is categorical, or a million trials would not fit: `numbers.grouped` groups it and
+gives plain text, and `reading.of_run` what a trial has from its run, its settings among them.
 """
 
 import importlib
