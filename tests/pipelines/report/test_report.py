@@ -206,16 +206,6 @@ def test_a_hostile_name_stays_text(tmp_path, make_run):
     assert "alert(1)&lt;/script&gt;" in page.read_text()
 
 
-def test_the_list_of_runs(outputs, capsys):
-    assert main(["runs", str(outputs)]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert lines[0].split() == [
-        "key", "experiment", "map", "method", "trials", "state", "date", "size",
-    ]  # fmt: skip
-    assert len(lines) == 2 + 4 * 5 * 4
-    assert any("kg18_test4 #2" in line for line in lines)
-
-
 @pytest.mark.parametrize("arguments", [["{}/no"], ["{}"], ["runs", "{}/no"], ["runs", "{}"]])
 def test_nothing_to_report_is_one_line_and_exit_code_2(tmp_path, capsys, arguments):
     assert main([argument.format(tmp_path) for argument in arguments]) == 2
