@@ -6,6 +6,7 @@ import sys
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 import pandas as pd
 
@@ -19,9 +20,20 @@ from gapath.pipelines.reading.query import near
 from gapath.store.records import RunRecord, find_runs
 
 
+class _Parser(argparse.ArgumentParser):
+    """A parser that takes the -success of ``--sort -success`` for no option."""
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        words = list(sys.argv[1:] if args is None else args)
+        for i in range(len(words) - 1, 0, -1):
+            if words[i - 1] == "--sort":
+                words[i - 1 : i + 1] = [f"--sort={words[i]}"]
+        return super().parse_known_args(words, namespace)
+
+
 def parser() -> argparse.ArgumentParser:
     """Make the parser of the command's arguments."""
-    made = argparse.ArgumentParser(
+    made = _Parser(
         "gapath-report runs",
         description="List the run folders, newest last, and answer questions about them. Columns "
         "are what a list shows, every setting (planner.population) and every result, the mean of "
@@ -50,11 +62,7 @@ def parser() -> argparse.ArgumentParser:
 
 def main(arguments: Sequence[str]) -> None:
     """Answer on the standard output; raises InputError for what cannot be answered."""
-    words = list(arguments)
-    for i in range(len(words) - 1, 0, -1):
-        if words[i - 1] == "--sort":  # argparse takes -success for an option
-            words[i - 1 : i + 1] = [f"--sort={words[i]}"]
-    given = parser().parse_args(words)
+    given = parser().parse_args(list(arguments))
     for name in ("columns", "group", "sort") if given.sql is not None else ():
         require(getattr(given, name) is None, f"--{name}", "--sql, too", "only one of them")
     runs = find_runs(given.outputs)
