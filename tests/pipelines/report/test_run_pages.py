@@ -9,7 +9,7 @@ import pytest
 
 from gapath.pipelines.report import stills as stills_module
 from gapath.pipelines.report.report import make_report
-from gapath.pipelines.report.run_pages import MOST_TRIALS, Addresses, _lines
+from gapath.pipelines.report.run_pages import MOST_TRIALS, Addresses, _lines, _rows
 from gapath.pipelines.report.stills import newest_logs, stills_of
 from gapath.recorders.mcap import FILE
 from gapath.store.records import FileEntry, find_runs, read_record
@@ -49,7 +49,7 @@ def test_a_page_says_what_was_run_and_what_it_came_from(tmp_path, make_run):
     assert said["map&#39;s content, SHA-256"] == known.map_digest
     assert said["maps/a.map, SHA-256"] == "ab" * 32 and said["late.txt, SHA-256"] == "cd" * 32
     assert said["gapath"] == "0" and said["setting"] == known.setting
-    assert said["planner.control_points"] == "4" and said["planner.stop_when_feasible"] == "true"
+    assert said["planner.control_points"] == "4" and said["planner.clip_to_map"] == "false"
     assert f"<code>{known.command}</code>" in text
     assert f"gapath-log verify {run / FILE}" in text
 
@@ -112,7 +112,7 @@ def test_trials_are_the_first_and_in_the_order_of_their_run():
         for key, seed, n in (("few", 0, 3), ("many", 1, MOST_TRIALS + 50))
     )
     mixed = pd.concat([many[:100], few, many[100:]], ignore_index=True)
-    lines = {key: text.splitlines() for key, text in _lines("plan", mixed)}
+    lines = {key: _lines(rows).splitlines() for key, rows in _rows("plan", mixed)}
     head, *rows = lines["many"]
     names = head.split(",")
     assert names[0] == "trial" and {"status", "feasible", "epochs", "cost"} <= set(names)
@@ -122,7 +122,7 @@ def test_trials_are_the_first_and_in_the_order_of_their_run():
     assert len(lines["few"]) == 1 + 3
     costs = [float(row.split(",")[names.index("cost")]) for row in rows]
     assert costs == pytest.approx(list(many["cost"][:MOST_TRIALS]))
-    assert dict(_lines("plan", mixed[:0])) == {}
+    assert dict(_rows("plan", mixed[:0])) == {}
 
 
 def test_a_genetic_algorithm_is_drawn_at_its_first_middle_and_last_epoch(tmp_path, make_run):
