@@ -1,6 +1,5 @@
 """What the trials of each map and method come to, all at once: a row a cell."""
 
-from collections.abc import Sequence
 from statistics import NormalDist
 from typing import NamedTuple
 
@@ -8,11 +7,11 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from gapath.pipelines.numbers.grouped import Groups
 from gapath.pipelines.sweeps.measures import Effort, Measures, Values, chance
 
 Index = NDArray[np.int64]
 
-QUARTILES = {"median": 0.5, "q1": 0.25, "q3": 0.75}
 _Z = NormalDist().inv_cdf(0.975)
 
 
@@ -63,12 +62,13 @@ def summarise_cells(trials: pd.DataFrame, cases: pd.DataFrame, measures: Measure
     known = _by_chance(trials, count)
     table["success_low"], table["success_high"] = np.where(known, (low, high), np.nan)
     columns: dict[str, Values] = {}
+    groups = Groups(cell, count)
     for effort in measures.efforts:
         spent = effort.read(trials)
-        columns |= _quartiles(effort.name, spent, cell, count)
+        columns |= _quartiles(effort.name, spent, groups)
         columns |= expected(effort, spent, success, (cell, count))
     for middle in measures.middles:
-        columns |= _quartiles(middle.name, middle.read(trials), cell, count)
+        columns |= _quartiles(middle.name, middle.read(trials), groups)
     for share in measures.shares:
         columns[share.name] = np.bincount(cell, share.read(trials), count) / table["n"].to_numpy()
     return Cells(table.assign(**columns), trials)
@@ -160,43 +160,6 @@ def expected(
     return {key: np.where(n > 0, each, np.nan) for key, each in found}
 
 
-def _quartiles(name: str, values: Values, group: Index, count: int) -> dict[str, Values]:
-    found = quantiles(values, group, count, list(QUARTILES.values()))
-    return {f"{name}_{key}": row for key, row in zip(QUARTILES, found, strict=True)}
-
-
-def quantiles(values: Values, group: Index, count: int, levels: Sequence[float]) -> Values:
-    """Give quantiles by group, as NumPy's do between two values.
-
-    Parameters
-    ----------
-    values : (n,) float64
-        Those that are NaN are left out.
-    group : (n,) int64
-        Each value's group.
-    count : int
-        How many groups there are.
-    levels : sequence of float
-        Which quantiles, in [0, 1].
-
-    Returns
-    -------
-    (levels, count) float64
-        NaN for a group without values.
-    """
-    known = ~np.isnan(values)
-    values, group = values[known], group[known]
-    order = np.lexsort((values, group))
-    ascending = np.append(values[order], np.nan)
-    size = np.bincount(group, minlength=count)
-    first = np.cumsum(size) - size
-    found = []
-    for level in levels:
-        place = level * np.maximum(size - 1, 0)
-        below = np.floor(place).astype(np.int64)
-        above = np.minimum(below + 1, np.maximum(size - 1, 0))
-        low, high = ascending[first + below], ascending[first + above]
-        part = place - below
-        value = np.where(part == 0, low, low + part * (high - low))
-        found.append(np.where(size > 0, value, np.nan))
-    return np.array(found)
+def _quartiles(name: str, values: Values, groups: Groups) -> dict[str, Values]:
+    found = groups.quartiles(values)
+    return {f"{name}_{key}": getattr(found, key) for key in ("median", "q1", "q3")}

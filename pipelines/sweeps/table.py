@@ -1,8 +1,9 @@
 """Experiments that no other section is about: what varied, and what came of it."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import pandas as pd
 
@@ -35,8 +36,6 @@ ORDER = 90
 
 _MAPS = 7
 """More maps than so many are drawn together."""
-_ROWS = 400
-"""A page shows so many rows of a table."""
 
 
 def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> list[Section]:
@@ -139,9 +138,9 @@ def _table(view: View, drawn: View) -> Table:
         view = replace(view, labels=view.labels | drawn.labels)
     data = rows.drop(columns=["cell", "runs"])
     several = bool(rows["problems"].max() > 1)
-    shown = pd.DataFrame([_cells(view, row, several) for _, row in rows.head(_ROWS).iterrows()])
-    heads, behind = 1 + len(_heads(view)), tuple(rows["runs"].head(_ROWS))
-    return Table(view.stem, _caption(view, len(rows)), data, shown, heads=heads, runs=behind)
+    shown = pd.DataFrame([_cells(view, row, several) for row in rows.to_dict("records")])
+    heads, behind = 1 + len(_heads(view)), tuple(rows["runs"])
+    return Table(view.stem, _caption(view), data, shown, heads=heads, runs=behind)
 
 
 def _sorted(view: View) -> pd.DataFrame:
@@ -168,7 +167,7 @@ def _heads(view: View) -> list[str]:
     return [factor.name for factor in view.sweep.factors] or [view.sweep.choice]
 
 
-def _cells(view: View, row: pd.Series, problems: bool) -> dict[str, str]:
+def _cells(view: View, row: Mapping[str, Any], problems: bool) -> dict[str, str]:
     """Write a row's cells; of a map's problems only where a map has several."""
     measures = view.measures
     titles = {factor.name: factor.title.capitalize() for factor in view.sweep.factors}
@@ -195,7 +194,7 @@ def _cells(view: View, row: pd.Series, problems: bool) -> dict[str, str]:
     return shown
 
 
-def _caption(view: View, count: int) -> str:
+def _caption(view: View) -> str:
     measures = view.measures
     parts = [f"{measures.succeeded}: with the 95 % Wilson interval over {measures.unit}"]
     if view.cells["problems"].max() > 1:
@@ -210,8 +209,6 @@ def _caption(view: View, count: int) -> str:
                      "those that succeeded")  # fmt: skip
     if view.cells["success_low"].isna().any():
         parts.append("what has no chance has no interval")
-    if count > _ROWS:
-        parts.append(f"the page has {_ROWS} of {number(count)} rows, the CSV has all")
     return "; ".join(parts) + "."
 
 

@@ -1,8 +1,9 @@
 """A sweep with its numbers, as its tables and figures see it."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import pandas as pd
 
@@ -198,14 +199,14 @@ def interval(low: float, high: float, scale: float = 1.0) -> str:
     return f" ({number(rounded(low * scale))} to {number(rounded(high * scale))})"
 
 
-def rate(row: pd.Series, name: str = "success") -> str:
+def rate(row: Mapping[str, Any], name: str = "success") -> str:
     """Write a rate in percent with its interval."""
     low, high = row[f"{name}_low"], row[f"{name}_high"]
     ends = "" if pd.isna(low) else f" ({100 * low:.1f} to {100 * high:.1f})"
     return percent(row[name]) + ends
 
 
-def amount(row: pd.Series, effort: Effort) -> str:
+def amount(row: Mapping[str, Any], effort: Effort) -> str:
     """Write what is expected until a success, with its interval."""
     name = f"expected_{effort.name}"
     value = row[name]

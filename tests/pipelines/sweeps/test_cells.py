@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gapath.pipelines.numbers.statistics import expected_running_time, wilson
-from gapath.pipelines.sweeps.cells import expected, quantiles, summarise_cells, wilson_of
+from gapath.pipelines.sweeps.cells import expected, summarise_cells, wilson_of
 from gapath.pipelines.sweeps.measures import Effort, measures_of
 from gapath.pipelines.sweeps.varied import cases_of
 from gapath.task import find_task
@@ -92,21 +92,6 @@ def test_drives_count_steps_over_the_shortest_of_failures_too():
     assert row["expected_steps_ratio"] == pytest.approx((20 + 21 + 22 + 23) / 20 / 2)
     assert row["expected_seconds"] == pytest.approx(0.5)
     assert (row["returned"], row["overran"], row["never_left"]) == (0.5, 0, 0)
-
-
-@given(st.lists(st.tuples(st.integers(0, 30), st.integers(0, 4)), max_size=40))
-def test_quantiles_are_those_of_numpy(pairs):
-    values = np.array([value for value, _ in pairs], dtype=float)
-    values[values == 30] = np.nan
-    group = np.array([group for _, group in pairs], dtype=np.int64)
-    levels = [0, 0.25, 0.5, 0.9, 1]
-    found = quantiles(values, group, 5, levels)
-    for i in range(5):
-        mine = values[(group == i) & ~np.isnan(values)]
-        if len(mine):
-            assert found[:, i] == pytest.approx(np.quantile(mine, levels))
-        else:
-            assert np.isnan(found[:, i]).all()
 
 
 @given(st.integers(1, 500), st.data())

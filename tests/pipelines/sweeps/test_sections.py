@@ -210,15 +210,6 @@ def test_a_task_of_which_nothing_is_known_has_its_success(monkeypatch):
     ]
 
 
-@pytest.mark.usefixtures("undrawn")
-def test_long_tables_are_cut_and_say_so(monkeypatch):
-    monkeypatch.setattr(table, "_ROWS", 5)
-    (section,) = sections(ga(grid(population=range(10, 90, 10)), n=2))
-    made = by_name(section, "population")
-    assert (len(made.data), len(made.shown), len(made.runs)) == (8, 5, 5)
-    assert "the page has 5 of 8 rows" in made.caption
-
-
 def test_the_report_has_a_section_for_each_experiment(tmp_path, make_run, make_drive_run):
     for planner in ("ga1", "astar"):
         make_run(tmp_path, "first", "kg18_test1", planner, n=3, log=False)
