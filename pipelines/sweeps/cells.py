@@ -8,6 +8,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gapath.pipelines.numbers.grouped import Groups
+from gapath.pipelines.numbers.statistics import wilson
 from gapath.pipelines.sweeps.measures import Effort, Measures, Values, chance
 
 Index = NDArray[np.int64]
@@ -101,11 +102,9 @@ def _by_chance(trials: pd.DataFrame, count: int) -> NDArray[np.bool_]:
 
 def wilson_of(rates: Values, n: Values) -> tuple[Values, Values]:
     """Give `statistics.wilson` of many rates at once."""
-    z2 = _Z * _Z
-    centre = (rates + z2 / (2 * n)) / (1 + z2 / n)
-    half = _Z * np.sqrt(rates * (1 - rates) / n + z2 / (4 * n * n)) / (1 + z2 / n)
-    low = np.where(rates == 0, 0.0, np.maximum(0.0, centre - half))
-    return low, np.where(rates == 1, 1.0, np.minimum(1.0, centre + half))
+    ends = [wilson(*each) for each in zip(rates.tolist(), n.tolist(), strict=True)]
+    low, high = np.array(ends, dtype=np.float64).reshape(-1, 2).T
+    return low, high
 
 
 def expected(

@@ -4,11 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from gapath.pipelines.numbers.statistics import expected_running_time, wilson
-from gapath.pipelines.sweeps.cells import expected, summarise_cells, wilson_of
+from gapath.pipelines.sweeps.cells import expected, summarise_cells
 from gapath.pipelines.sweeps.measures import Effort, measures_of
 from gapath.pipelines.sweeps.varied import cases_of
 from gapath.task import find_task
@@ -92,13 +90,6 @@ def test_drives_count_steps_over_the_shortest_of_failures_too():
     assert row["expected_steps_ratio"] == pytest.approx((20 + 21 + 22 + 23) / 20 / 2)
     assert row["expected_seconds"] == pytest.approx(0.5)
     assert (row["returned"], row["overran"], row["never_left"]) == (0.5, 0, 0)
-
-
-@given(st.integers(1, 500), st.data())
-def test_wilson_of_many_is_that_of_each(n, data):
-    k = data.draw(st.integers(0, n))
-    low, high = wilson_of(np.array([k / n]), np.array([n]))
-    assert (low[0], high[0]) == pytest.approx(wilson(k / n, n), abs=1e-12)
 
 
 @pytest.mark.parametrize(("rate", "least"), [(0.9, 0.925), (0.5, 0.925), (0.15, 0.9)])
