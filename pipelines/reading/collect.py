@@ -3,6 +3,7 @@
 import hashlib
 import json
 import math
+import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
@@ -50,8 +51,9 @@ _FORMS: dict[type, _Form] = {
 }
 _SEED = _Form(_is_number, "whole numbers from 0", pa.uint64())
 
-_TOGETHER = 256
-"""Runs whose rows are put together at a time: thousands of small pieces take more room."""
+_TOGETHER = 64
+"""Runs that a thread reads at a time, and whose rows are put together: thousands of small pieces
+take more room."""
 
 
 class Skipped(NamedTuple):
@@ -101,21 +103,22 @@ def read_trials(runs: Iterable[RunRecord]) -> Collected:
     used: list[RunRecord] = []
     rows: dict[str, list[pa.Table]] = {task: [] for task in kinds("task")}
     lengths: dict[str, list[int]] = {task: [] for task in rows}
-    with ThreadPoolExecutor() as pool, tqdm(total=len(good), desc="runs", disable=None) as bar:
-        for at in range(0, len(good), _TOGETHER):
-            some = good[at : at + _TOGETHER]
+    pieces = [good[at : at + _TOGETHER] for at in range(0, len(good), _TOGETHER)]
+    progress = tqdm(total=len(good), desc="runs", disable=None)
+    with ThreadPoolExecutor(os.cpu_count()) as pool, progress:
+        for some, tables in zip(pieces, pool.map(_read_all, pieces), strict=True):
             fresh: dict[str, list[pa.Table]] = {task: [] for task in rows}
-            for run, table in zip(some, pool.map(_read, some), strict=True):
+            for run, table in zip(some, tables, strict=True):
                 if isinstance(table, InputError):
                     skipped.append(Skipped(run.name, str(table)))
                     continue
                 used.append(run)
                 fresh[run.known.task].append(table)
                 lengths[run.known.task].append(len(table))
-            for task, tables in fresh.items():
-                if tables:
-                    rows[task].append(_together(tables))
-            bar.update(len(some))
+            for task, mine in fresh.items():
+                if mine:
+                    rows[task].append(_together(mine))
+            progress.update(len(some))
     used = told_apart(used)
     trials = {}
     for task, counts in lengths.items():
@@ -158,6 +161,10 @@ def _spread_out(texts: Sequence[str], of_run: NDArray[np.intp]) -> pd.Categorica
     place = {name: i for i, name in enumerate(names)}
     codes = np.array([place[text] for text in texts], dtype=np.int32)
     return pd.Categorical.from_codes(codes[of_run], names)
+
+
+def _read_all(runs: Sequence[RunRecord]) -> list[pa.Table | InputError]:
+    return [_read(run) for run in runs]
 
 
 def _read(run: RunRecord) -> pa.Table | InputError:
