@@ -144,9 +144,11 @@ def grouped(trials: pd.DataFrame, by: list[str]) -> tuple[pd.DataFrame, Groups]:
     grouping = trials.groupby(by, sort=True, observed=True)
     of = grouping.ngroup().to_numpy()
     names = grouping.size().index.to_frame(index=False)
-    plain = {
-        name: kind.categories.dtype
-        for name, kind in names.dtypes.items()
-        if isinstance(kind, pd.CategoricalDtype)
-    }
-    return names.astype(plain), Groups(of, len(names))
+    return plain(names), Groups(of, len(names))
+
+
+def plain(frame: pd.DataFrame) -> pd.DataFrame:
+    """Give a frame whose categories are what they stand for."""
+    kinds = frame.dtypes.items()
+    held = {name: kind for name, kind in kinds if isinstance(kind, pd.CategoricalDtype)}
+    return frame.astype({name: kind.categories.dtype for name, kind in held.items()})

@@ -10,8 +10,8 @@ A section is one file of pipelines, ``table*.py`` or ``figure_*.py``, that offer
 - ``section(trials, runs)``: a frame of trials and the runs they come from -> `Section`, or several
   in a list, or None where there is nothing to show.
 
-Text in the frame is categorical, or a million trials would not fit: `numbers.grouped` groups it and
-gives plain text, and `reading.of_run` what a trial has from its run, its settings among them.
+Text in the frame but its `key` is categorical, or a million trials would not fit: `numbers.grouped`
+groups it and gives plain text, and `reading.of_run` what a trial has from its run, as settings are.
 """
 
 import importlib

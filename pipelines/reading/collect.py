@@ -68,7 +68,7 @@ class Collected(NamedTuple):
 
     trials: dict[str, pd.DataFrame]
     """For each task one row a trial: the columns of its rows, and `key`, the name of the run's
-    folder. Text is categorical, its categories in the alphabet's order. What a run was set to is
+    folder. Text but the key is categorical, its categories in the alphabet's order. What a run was set to is
     not repeated in each of its rows: `RunRecord.settings` has it."""
     skipped: list[Skipped]
     runs: list[RunRecord]
@@ -149,7 +149,7 @@ def _frame(
         if isinstance(column.dtype, pd.CategoricalDtype):
             column = column.cat.reorder_categories(column.cat.categories.sort_values())
         frame[name] = column
-    frame["key"] = _spread_out([run.folder.name for run in runs], of_run)
+    frame["key"] = pd.array([run.folder.name for run in runs], dtype="str")[of_run]
     frame["map"] = _spread_out([run.known.map for run in runs], of_run)
     frame[kind.groups[0]] = _spread_out([run.known.method for run in runs], of_run)
     return pd.DataFrame(frame, copy=False)

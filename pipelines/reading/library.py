@@ -17,6 +17,7 @@ from gapath.events import DriveFinished, Event, Evolved, Finished, TrialFinished
 from gapath.grid import GridMap
 from gapath.kernels.raster import polyline
 from gapath.pictures.shown import Shown
+from gapath.pipelines.numbers.grouped import plain
 from gapath.pipelines.reading.collect import read_trials
 from gapath.pipelines.reading.frame import checked, run_frame
 from gapath.pipelines.reading.logs import events_of, has_log, run_start
@@ -154,12 +155,12 @@ class Run(Shown):
 
     @cached_property
     def trials(self) -> pd.DataFrame:
-        """Its trials, a row each: ``trials.parquet``."""
+        """Its trials, a row each; what all of them were set to is in `settings`."""
         self._usable()
         collected = read_trials([self.record])
         for skipped in collected.skipped:
             raise InputError(skipped.run, skipped.reason, "a run that can be used")
-        return collected.trials[self.record.known.task]
+        return plain(collected.trials[self.record.known.task])
 
     @property
     def log(self) -> Iterator[Event]:
