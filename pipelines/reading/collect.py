@@ -68,8 +68,8 @@ class Collected(NamedTuple):
 
     trials: dict[str, pd.DataFrame]
     """For each task one row a trial: the columns of its rows, and `key`, the name of the run's
-    folder. Text but the key is categorical, its categories in the alphabet's order. What a run was set to is
-    not repeated in each of its rows: `RunRecord.settings` has it."""
+    folder. Text but the key is categorical, its categories in the alphabet's order. What a run
+    was set to is not repeated in each of its rows: `RunRecord.settings` has it."""
     skipped: list[Skipped]
     runs: list[RunRecord]
     """The runs that they come from, under names that tell them apart."""
