@@ -9,7 +9,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure as Canvas
-from matplotlib.patches import Patch, Rectangle
+from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
 from gapath.pipelines.numbers.text import number, percent
@@ -73,7 +73,6 @@ def _figure(view: View, quantity: Quantity) -> Figure:
         bar.outline.set_visible(False)
         if quantity.log:
             plain(bar.ax.xaxis)
-        _explain(canvas, tables)
         svg, png = render(canvas)
     name = "success" if quantity.name == "success" else "expected"
     return Figure(
@@ -139,17 +138,6 @@ def _ticks(panel: Axes, across: Factor, down: Factor) -> None:
         step = -(-len(factor.levels) // _TICKS)
         places = range(0, len(factor.levels), step)
         put(places, [text(factor.levels[i]) for i in places])
-
-
-def _explain(canvas: Canvas, tables: list[tuple[str, Cells]]) -> None:
-    every = np.concatenate([table.ravel() for _, table in tables])
-    handles = []
-    if np.isnan(every).any():
-        handles.append(Patch(**_NOT_TRIED, label="not tried"))
-    if np.isposinf(every).any():
-        handles.append(Patch(fc=_NEVER, label="\N{INFINITY}: never"))
-    if handles:
-        canvas.legend(handles=handles, loc="outside lower center", ncols=2)
 
 
 def _caption(
