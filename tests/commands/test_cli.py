@@ -196,6 +196,7 @@ def test_an_interrupted_run_says_so(gapath, tmp_path, monkeypatch):
         (["threads=0"], "threads: got 0"),
         (["seed=-1"], "seed: got -1"),
         (["name=../x"], "name: got '../x'"),
+        (["name=compare"], "name: got compare, expected another"),
         (["corner_cutting=maybe"], "corner_cutting: got maybe"),
         (["recorder.rerun.trials=[3]"], "recorder.rerun.trials: got [3]"),
         (["recorder.rerun.trials=[a]"], "recorder.rerun.trials"),
