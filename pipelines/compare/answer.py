@@ -1,7 +1,7 @@
 """The answer to a question: sentences, tables, pictures, and what they rest on."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -19,6 +19,7 @@ from gapath.pipelines.compare.tables import (
     whole_table,
 )
 from gapath.pipelines.compare.words import WORDINGS, sentences
+from gapath.pipelines.numbers.comparable import comparable
 from gapath.pipelines.numbers.comparison import Comparison, compare
 from gapath.pipelines.numbers.groups import Groups, overlap, side_by_side
 from gapath.pipelines.numbers.text import number, span
@@ -51,7 +52,7 @@ class Answer:
     def heading(self) -> str:
         """What was compared, in a line."""
         choice, groups = self.choice, self.groups
-        maps = choice.trials["map"].nunique()
+        maps = choice.trials["map_digest"].nunique()
         where = f"{maps} maps" if maps > 1 else choice.trials["map"].iloc[0]
         return (
             f"{self.by}: {len(groups.names)} groups, {number(len(choice.trials))} trials of "
@@ -143,6 +144,7 @@ def answer(
         As `choose`.
     """
     choice = choose(outputs, by, wheres)
+    choice = replace(choice, **comparable(choice.trials, choice.group, choice.also)._asdict())
     groups = side_by_side(choice.trials, choice.task.success, choice.group, choice.also)
     found = tuple(compare(groups, quantity) for quantity in quantities)
     return Answer(by or "where", choice, groups, found)
@@ -175,7 +177,9 @@ def _pairing(choice: Choice, groups: Groups) -> list[str]:
 
 
 def _limits(choice: Choice, groups: Groups) -> list[str]:
-    found = []
+    found = list(choice.said)
+    if groups.copies is not None and groups.copies.any():
+        found.append("Trials without chance that repeat another count once, but for times.")
     if groups.repeated:
         found.append(f"{number(groups.repeated)} trials were done twice and count once.")
     if choice.beside:

@@ -45,6 +45,8 @@ class Choice:
         Runs that no number is made from, and why.
     versions : tuple of str
         The versions of gapath that made the runs.
+    said : tuple of str
+        What `gapath.pipelines.numbers.comparable.comparable` left out, in words.
     """
 
     task: type[Task]
@@ -54,6 +56,7 @@ class Choice:
     beside: tuple[str, ...]
     left_out: tuple[Skipped, ...]
     versions: tuple[str, ...]
+    said: tuple[str, ...] = ()
 
 
 def choose(outputs: Path, by: str | None, wheres: Sequence[str]) -> Choice:

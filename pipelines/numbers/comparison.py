@@ -20,6 +20,7 @@ from gapath.pipelines.numbers.pairwise import (
     Difference,
     holm,
     more_often,
+    more_often_by_problem,
     paired_amounts,
     paired_rates,
     signed_rank,
@@ -139,6 +140,8 @@ def compare(groups: Groups, quantity: str) -> Comparison:
         With reasons in words where a number cannot be had; the same for the same groups.
     """
     rate = quantity == "success"
+    if not quantity.endswith("time"):
+        groups = groups.without_copies()
     values = _values(groups, quantity)
     own, found = _estimated(groups, quantity, values)
     usable = [at for at, each in enumerate(own) if each.value is not None]
@@ -160,7 +163,7 @@ def compare(groups: Groups, quantity: str) -> Comparison:
     elif rate:
         differences = _rates(groups, count, all_pairs)
     else:
-        differences = _amounts(values, count, all_pairs, shown)
+        differences = _amounts(values, count, all_pairs, shown, groups.problem)
     if not quantity.endswith("time"):  # which differs whatever is done
         differences = _of_chance(groups, all_pairs, differences)
     pairs = _judged(groups.names, count, all_pairs, list(differences), omnibus)
@@ -281,7 +284,11 @@ def _rates(
 
 
 def _amounts(
-    values: Table, count: Overlap, pairs: Sequence[tuple[int, int]], shown: Sequence[bool]
+    values: Table,
+    count: Overlap,
+    pairs: Sequence[tuple[int, int]],
+    shown: Sequence[bool],
+    problem: Table | None,
 ) -> Iterator[Difference]:
     known = _all_signed_ranks(values, count, pairs)
     for (i, j), show, p in zip(pairs, shown, known, strict=True):
@@ -293,7 +300,12 @@ def _amounts(
             found = paired_amounts(first[common], second[common], show, p)
         else:
             found = unpaired_amounts(*alone, show)
-        yield found._replace(a12=more_often(*alone)) if show else found
+        if show and problem is not None:
+            which = problem[there[0], i], problem[there[1], j]
+            found = found._replace(a12=more_often_by_problem(*alone, *which))
+        elif show:
+            found = found._replace(a12=more_often(*alone))
+        yield found
 
 
 def _all_signed_ranks(
@@ -324,7 +336,8 @@ def _judged(
     omnibus: Omnibus | None,
 ) -> Iterator[Pair]:
     adjusted = holm([found.p for found in differences])
-    differ = omnibus is None or (omnibus.p is not None and omnibus.p < LEVEL)
+    # Holm's correction holds by itself where it cannot be asked whether any two groups differ
+    differ = omnibus is None or omnibus.p is None or omnibus.p < LEVEL
     for (i, j), found, p in zip(pairs, differences, adjusted, strict=True):
         paired = int(count.pairs[i, j]) if count.paired(i, j) else 0
         apart = p is not None and p < LEVEL and differ

@@ -1,7 +1,7 @@
 """Trials of groups side by side: of the same problem, with the same random numbers."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -42,6 +42,11 @@ class Groups:
         Whether rows are blocks: not where no two trials pair, so that they stand as they come.
     problems : int
         How many problems there are.
+    problem : (blocks, groups) float64 or None
+        The number of each trial's problem; None where all are one.
+    copies : (blocks,) bool or None
+        Blocks in which no group draws random numbers and that repeat an earlier one, but for
+        times.
     """
 
     names: tuple[str, ...]
@@ -51,6 +56,21 @@ class Groups:
     repeated: int
     blocks: bool = True
     problems: int = 1
+    problem: Table | None = None
+    copies: NDArray[np.bool_] | None = None
+
+    def without_copies(self) -> "Groups":
+        """Give the blocks that tell something of their own, but for times."""
+        if self.copies is None or not self.copies.any():
+            return self
+        kept = ~self.copies
+        return replace(
+            self,
+            success=self.success[kept],
+            spent={name: values[kept] for name, values in self.spent.items()},
+            problem=None if self.problem is None else self.problem[kept],
+            copies=None,
+        )
 
 
 class Overlap(NamedTuple):
@@ -139,18 +159,38 @@ def side_by_side(
         for column in columns
         if column in kept
     }
-    return Groups(names, table(found), spent, _chance(kept, success, frame["group"], names),
-                  int((~once).sum()), blocks, len(runs.groupby(list(PROBLEM))))  # fmt: skip
+    problem = runs.groupby(list(PROBLEM), sort=False).ngroup()
+    drawn = _drawn(kept, success)
+    copies = None
+    if blocks:
+        never = ~kept["key"].map(drawn).groupby(block).any()
+        of_block = pd.DataFrame({"run": frame["run"].to_numpy()}).groupby(block)["run"].first()
+        copies = (of_block.duplicated() & never).to_numpy()
+    return Groups(
+        names,
+        table(found),
+        spent,
+        _chance(kept["key"].map(drawn), frame["group"], names),
+        int((~once).sum()),
+        blocks,
+        int(problem.nunique()),
+        table(kept["key"].map(problem)),
+        copies,
+    )
 
 
-def _chance(
-    trials: pd.DataFrame, success: str, group: pd.Series, names: Sequence[str]
-) -> tuple[bool, ...]:
-    """Tell which groups draw random numbers: they evaluate, or trials of a run differ."""
+def _drawn(trials: pd.DataFrame, success: str) -> pd.Series:
+    """Tell of each run whether it draws random numbers: it evaluates, or its trials differ."""
+    runs = trials.groupby("key")
     if "evaluations" not in trials:
-        return (True,) * len(names)
-    drawn = trials["evaluations"].gt(0).groupby(group).any()
+        return runs.size() > 0
     results = [name for name in (success, "cost") if name in trials]
-    differ = trials.groupby("key")[results].nunique(dropna=False).gt(1).any(axis=1)
-    drawn |= trials["key"].map(differ).groupby(group).any()
-    return tuple(bool(drawn.get(code, False)) for code in range(len(names)))
+    differ = runs[results].nunique(dropna=False).gt(1).any(axis=1)
+    drawn: pd.Series = runs["evaluations"].any() | differ
+    return drawn
+
+
+def _chance(drawn: pd.Series, group: pd.Series, names: Sequence[str]) -> tuple[bool, ...]:
+    """Tell which groups draw random numbers."""
+    found = drawn.groupby(group).any()
+    return tuple(bool(found.get(code, False)) for code in range(len(names)))

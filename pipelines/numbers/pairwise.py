@@ -273,3 +273,27 @@ def more_often(first: Vector, second: Vector) -> float:
 
     u = mannwhitneyu(first, second, method="asymptotic").statistic
     return float(u) / (len(first) * len(second))
+
+
+def more_often_by_problem(
+    first: Vector, second: Vector, of_first: Vector, of_second: Vector
+) -> float | None:
+    """Give A12 within problems: pooled, those that few solve would say which group has more.
+
+    Parameters
+    ----------
+    first, second : (n,) and (m,) float64
+        Of each trial, in one unit.
+    of_first, of_second : (n,) and (m,) float64
+        The problem of each trial.
+
+    Returns
+    -------
+    float or None
+        The mean of `more_often` over the problems that both have; None if there is none.
+    """
+    shared = np.intersect1d(of_first, of_second)
+    each = [
+        more_often(first[of_first == problem], second[of_second == problem]) for problem in shared
+    ]
+    return float(np.mean(each)) if each else None

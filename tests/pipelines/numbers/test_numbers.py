@@ -3,7 +3,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.stats import binom, binomtest
 
@@ -47,6 +47,7 @@ def test_median_interval_of_edge_cases():
     assert all(math.isnan(end) for end in median_interval([]))
 
 
+@settings(max_examples=30)
 @given(st.lists(st.integers(0, 30), min_size=1, max_size=6))
 def test_median_interval_is_that_of_all_resamples(values):
     """Slow twin: every resample there is, each with the same chance."""
