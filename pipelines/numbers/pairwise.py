@@ -152,7 +152,8 @@ def unpaired_rates(succeeded: tuple[int, int], n: tuple[int, int]) -> Difference
         return result._replace(p=1.0, why="all trials ended alike")
     if few:
         return result._replace(p=float(fisher_exact([[x1, n1 - x1], [x2, n2 - x2]]).pvalue))
-    p = test_proportions_2indep(x1, n1, x2, n2, method="score").pvalue
+    with np.errstate(divide="ignore"):  # it takes the ratio of odds, too
+        p = test_proportions_2indep(x1, n1, x2, n2, method="score").pvalue
     return result._replace(p=float(p))
 
 

@@ -23,7 +23,8 @@ def superseded(runs: Iterable[RunRecord]) -> list[tuple[RunRecord, RunRecord]]:
         Each superseded one, and the one that counts; the newest first.
     """
     usable = [run for run in runs if not run.fault]
-    usable.sort(key=lambda run: (run.date, run.name), reverse=True)
+    original = {id(run): run.folder.name == run.known.key for run in usable}  # not a copy
+    usable.sort(key=lambda run: (run.date, original[id(run)], run.name), reverse=True)
     counts: dict[str, RunRecord] = {}
     for run in usable:
         first = counts.setdefault(run.known.setting, run)

@@ -105,7 +105,7 @@ def refusal(error: Exception, text: str, columns: Collection[str], where: str) -
         dotted = re.search(rf"\b{re.escape(name)}(\.\w+)+", text)  # SQL took it for a table's
         name = dotted.group() if dotted else name
         hint = near(name, columns)
-        if f'"{name}"' in text:
+        if f'"{name}"' in text or not (hint or dotted):
             hint = f"{hint}; text stands in single quotes: '{name}'"
         return InputError(where, text, f"a column in place of {name}{hint}")
     return InputError(where, text, f"SQL that can be answered ({message})")

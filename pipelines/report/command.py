@@ -6,6 +6,8 @@ from collections.abc import Iterable
 
 _LIST = re.compile(r"\[[^][]*\]")
 _QUOTING = re.compile(r"""['"\\]""")
+_MANY = 8
+"""More values than these are a range, if they are one."""
 _SEVERAL = re.compile(r"[,'\"\s]")
 """A value with these outside of a list would read as several in a sweep, or as part of one."""
 
@@ -53,8 +55,19 @@ def _as_sweep(commands: list[str]) -> list[str]:
         several = any(_SEVERAL.search(_LIST.sub("", value)) for value in values)
         if len(set(column)) > 1 and (len(keys) > 1 or several):
             return commands
-        joined = ",".join(sorted(values, key=lambda value: (len(value), value)))
+        joined = _joined(values)
         words.append(column[0] if len(set(column)) == 1 else f"{keys.pop()}={joined}")
         combinations *= len(set(column))
     whole = len({len(job) for job in jobs}) == 1 and combinations == len(jobs) > 1
     return [shlex.join([words[0], "-m", *words[1:]])] if whole else commands
+
+
+def _joined(values: set[str]) -> str:
+    """Write values as Hydra sweeps over them, many whole numbers on end as their range."""
+    ordered = sorted(values, key=lambda value: (len(value), value))
+    first, count = ordered[0], len(ordered)
+    if count > _MANY and first.isdecimal():
+        end = int(first) + count
+        if ordered == [str(value) for value in range(int(first), end)]:
+            return f"range({first},{end})"
+    return ",".join(ordered)

@@ -1,6 +1,7 @@
 """Tests of two groups: textbook examples, and SciPy's and statsmodels' own answers."""
 
 import math
+import warnings
 
 import numpy as np
 import pytest
@@ -83,6 +84,14 @@ def test_trials_without_pairs_by_their_number():
     # Newcombe 1998, Statistics in Medicine 17, 873-890, example (a): 56/70 - 48/80
     example = unpaired_rates((56, 48), (70, 80))
     assert (round(example.low, 4), round(example.high, 4)) == (0.0524, 0.3339)
+
+
+def test_rates_of_all_and_none_warn_of_nothing():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for counts in ((30, 0), (0, 30), (30, 30), (0, 0), (30, 15), (15, 0)):
+            found = unpaired_rates(counts, (30, 30))
+            assert found.low <= found.effect <= found.high
 
 
 def test_wilcoxon_of_darwins_plants():

@@ -99,3 +99,11 @@ def test_each_experiment_is_a_sweep_of_its_own():
         "gapath -m map=a,b navigator=x,y experiment=far",
         "gapath -m map=c navigator=x,y,z experiment=near",
     ]
+
+
+def test_many_numbers_on_end_are_written_as_their_range():
+    jobs = [f"gapath map.problem={i} planner={p}" for i in range(5, 125) for p in ("a", "b")]
+    (line,) = as_sweeps(jobs)
+    assert line == "gapath -m 'map.problem=range(5,125)' planner=a,b"
+    (line,) = as_sweeps(job for job in jobs if "=17 " not in job)
+    assert "16,18" in line and "range" not in line

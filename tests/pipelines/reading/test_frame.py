@@ -1,6 +1,7 @@
 """Runs as a table: types, what is missing, runs of earlier versions, conditions."""
 
 import json
+import shutil
 from dataclasses import replace
 
 import pandas as pd
@@ -137,6 +138,13 @@ def test_the_run_that_counts_in_place_of_another_is_named(tmp_path, make_run):
     assert frame["superseded"].dropna().to_dict() == {"old": "new"}
 
 
+def test_a_copy_of_a_run_does_not_count_in_its_place(tmp_path, make_run):
+    folder = make_run(tmp_path, "e", "kg18_test1", "ga1", n=3, log=False, key="abcdef")
+    shutil.copytree(folder, folder.parent / "copy_of_it")
+    frame = run_frame(find_runs(tmp_path))
+    assert frame["superseded"].dropna().to_dict() == {"copy_of_it": "abcdef"}
+
+
 @pytest.fixture(scope="module")
 def frame():
     runs = [
@@ -187,6 +195,7 @@ def test_conditions(frame, where, right):
         ("succes > 0.5", "in place of succes; did you mean success?"),
         ("nothing > 1", "a column in place of nothing"),
         ("other.thing > 1", "a column in place of other.thing"),
+        ("map = kg18_test1", "of kg18_test1; text stands in single quotes: 'kg18_test1'"),
         ("planer.population > 1", "of planer.population; did you mean planner.population?"),
         ('map = "kg18_test1"', "text stands in single quotes: 'kg18_test1'"),
         ("map = ", "SQL that can be answered (Parser Error"),
