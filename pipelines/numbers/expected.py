@@ -16,6 +16,8 @@ FEWEST = 10
 
 _RESAMPLES, _PARTS = 1000, 2000
 
+_TOO_FEW = "too few that spend anything"
+
 
 @dataclass(frozen=True)
 class Expected:
@@ -29,7 +31,8 @@ class Expected:
         How many trials of each succeeded.
     logs : (resamples, groups) float64
         Logarithms of the same of blocks that were drawn with replacement, the same blocks for all
-        groups, so that pairs stay pairs; only of groups with `FEWEST` successes.
+        groups, so that pairs stay pairs; NaN of groups with fewer than `FEWEST` successes, or
+        with resamples that spend nothing.
     """
 
     values: NDArray[np.float64]
@@ -44,6 +47,8 @@ class Expected:
         value = float(self.values[at])
         if successes < FEWEST:
             return value, None, None, f"{successes} successes, too few for an interval"
+        if self._unknown(at):
+            return value, None, None, f"{_TOO_FEW} for an interval"
         low, high = np.exp(np.quantile(self.logs[:, at], (0.025, 0.975)))
         return value, float(low), float(high), ""
 
@@ -69,11 +74,15 @@ class Expected:
 
         spread = np.atleast_2d(np.cov(self.logs, rowvar=False))
         for (i, j), sized in zip(pairs, shown, strict=True):
-            effect = float(self.values[i] / self.values[j])
+            known = min(self.values[i], self.values[j]) > 0
+            effect = float(self.values[i] / self.values[j]) if known else None
             result = Difference("bootstrap", effect=effect)
             fewest = int(min(self.successes[i], self.successes[j]))
             if fewest < FEWEST:
                 yield result._replace(why=f"{fewest} successes, too few for a test")
+                continue
+            if effect is None or self._unknown(i) or self._unknown(j):
+                yield result._replace(why=f"{_TOO_FEW} for a test")
                 continue
             if sized:
                 ratios = self.logs[:, i] - self.logs[:, j]
@@ -85,6 +94,9 @@ class Expected:
                 continue
             z = abs(math.log(effect)) / math.sqrt(square)
             yield result._replace(p=2 * float(ndtr(-z)))
+
+    def _unknown(self, at: int) -> bool:
+        return bool(np.isnan(self.logs[:, at]).any())
 
 
 def expected(spent: Table, success: Table) -> Expected:
@@ -115,7 +127,7 @@ def expected(spent: Table, success: Table) -> Expected:
     parts = len(spent)
     weights = random.multinomial(parts, np.full(parts, 1 / parts), size=_RESAMPLES).astype(float)
     sums, counts = weights @ spent, weights @ success
-    logs = np.zeros_like(sums)
+    logs = np.full_like(sums, np.nan)
     known = (successes >= FEWEST) & (sums > 0).all(axis=0)
     logs[:, known] = np.log(sums[:, known]) - np.log(np.maximum(counts[:, known], 1))
     return Expected(np.array(values), successes, logs)

@@ -164,6 +164,20 @@ def test_neither_the_order_of_trials_nor_of_groups_changes_anything(seed, k, n, 
                 )
 
 
+@pytest.mark.parametrize("spent", [[0] * 18 + [100, 120], [0] * 20])
+@pytest.mark.filterwarnings("error")
+def test_where_a_resample_spends_nothing_there_is_neither_interval_nor_test(spent):
+    table = np.array([spent, [50 + at for at in range(20)]], float).T
+    found = expected(table, np.ones_like(table))
+    why = "too few that spend anything"
+    assert found.estimate(0) == (sum(spent) / 20, None, None, f"{why} for an interval")
+    assert found.estimate(1)[3] == ""
+    for pair in ((0, 1), (1, 0)):
+        (mine,) = found.differences([pair], [True])
+        assert (mine.p, mine.low, mine.high, mine.why) == (None, None, None, f"{why} for a test")
+        assert (mine.effect is None) == (sum(spent) == 0)
+
+
 def test_expected_amounts_agree_with_scipys_bootstrap():
     random = np.random.default_rng(4)
     success = random.random((400, 2)) < [0.9, 0.5]
