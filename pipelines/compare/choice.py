@@ -1,6 +1,7 @@
 """Which runs stand in which group, and what pairs their trials."""
 
 import json
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +13,7 @@ from gapath.errors import InputError, require
 from gapath.pipelines.papers.names import label, rank
 from gapath.pipelines.reading.collect import Skipped, read_trials
 from gapath.pipelines.reading.frame import chosen, run_frame
-from gapath.pipelines.reading.names import NO_METHOD
+from gapath.pipelines.reading.names import tried_with_contents
 from gapath.pipelines.reading.query import near
 from gapath.store.records import RunRecord, find_runs
 from gapath.store.settings import Value, tabular
@@ -128,16 +129,15 @@ def _choice(
     left_out: Sequence[Skipped],
 ) -> Choice:
     by, values, names = groups
-    settings = {run.folder.name: _treatment(run) for run in used}
+    settings = {run.folder.name: tried_with_contents(run) for run in used}
     varying = _varying(settings.values())
-    varying = [setting for setting in varying if setting != by]
     mine: dict[str, list[Mapping[str, Value]]] = {each: [] for each in names}
     for run in used:
         mine[values[run.folder.name]].append(settings[run.folder.name])
     within = {setting for each in mine.values() for setting in _varying(each)}
     also = tuple(setting for setting in varying if setting in within)
     method = by in ("method", "preset")
-    asked = " ".join(names) if by is None else ""
+    asked = [by] if by else [each for each in varying if _mentioned(each, names)]
     beside = tuple(
         setting for setting in varying if not (method or setting in within or setting in asked)
     )
@@ -162,7 +162,10 @@ def _where_of(records: Sequence[RunRecord], wheres: Sequence[str]) -> dict[Path,
     frame = run_frame(records).reset_index()  # a run is its place: a copy has the same key
     found: dict[Path, str] = {}
     for where in wheres:
-        places = chosen(frame, where).index
+        try:
+            places = chosen(frame, where).index
+        except InputError as error:
+            raise InputError("--where", error.value, error.expected) from error
         require(len(places) > 0, "--where", where, "a condition that a run fulfils")
         for run in (records[place] for place in places):
             other = found.setdefault(run.folder, where)
@@ -181,7 +184,10 @@ def _facts(run: RunRecord) -> dict[str, Any]:
 def _in_order(values: set[Any], by: str) -> list[Any]:
     if by in _NAMES:
         return sorted(values, key=lambda value: rank(str(value)))
-    return sorted(values, key=lambda value: (value is None, isinstance(value, str), value or 0))
+    return sorted(
+        values,
+        key=lambda value: (value is None, isinstance(value, str), 0 if value is None else value),
+    )
 
 
 def _shown(value: Any, by: str) -> str:
@@ -192,10 +198,10 @@ def _shown(value: Any, by: str) -> str:
     return f"{value:.12g}" if isinstance(value, float) else str(value)
 
 
-def _treatment(run: RunRecord) -> dict[str, Value]:
-    """Give the settings that say how trials are done, not on which map or how many."""
-    items = tabular(run.settings).items()
-    return {key: value for key, value in items if key.partition(".")[0] not in NO_METHOD}
+def _mentioned(setting: str, wheres: Sequence[str]) -> bool:
+    """Tell whether conditions name a setting, as SQL does in letters of any size."""
+    name = re.compile(rf"(?<![\w.]){re.escape(setting)}(?![\w.])", re.IGNORECASE)
+    return any(name.search(where) for where in wheres)
 
 
 def _varying(settings: Any) -> list[str]:

@@ -59,6 +59,19 @@ def tried(run: RunRecord) -> dict[str, Value]:
     return tabular(_flat(run))
 
 
+def tried_with_contents(run: RunRecord) -> dict[str, Value]:
+    """Give `tried`, and what input files hold: under the setting that names one, or its name."""
+    inputs = run.known.method_inputs
+    short = {path: f"{Path(path).name} {digest[:8]}" for path, digest in inputs.items()}
+    named = {
+        key: short[value]
+        for key, value in run.settings.items()
+        if isinstance(value, str) and value in short and _is_tried(key)
+    }
+    others = {path: digest for path, digest in inputs.items() if short[path] not in named.values()}
+    return {**tabular({**_flat(run), **named}), **_hashes(others)}
+
+
 def _flat(run: RunRecord) -> dict[str, Value]:
     settings = without_paths(run.settings, run.known.method_inputs).items()
     return {key: value for key, value in settings if _is_tried(key)}

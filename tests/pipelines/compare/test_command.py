@@ -183,6 +183,43 @@ def test_settings_that_vary_beside_pair_trials_or_are_named(try_out, tmp_path, c
     assert "The groups differ in planner.control_points, too." in capsys.readouterr().out
 
 
+@pytest.mark.parametrize(
+    ("known", "said"),
+    [
+        ([(40, "a/k.map", "12"), (80, "b/k.map", "12")], "seed, trial: 60 pairs."),
+        ([(40, "a/k.map", "12"), (80, "a/k.map", "34")], "groups differ in planner.known, too."),
+        ([(40, "a/k.map", "12"), (80, "a/m.map", "12")], "groups differ in planner.known, too."),
+        ([(each, "a/k.map", content) for each in (40, 80) for content in ("12", "34")],
+         "seed, trial, planner.known: 120 pairs."),
+        ([(40, "", "12"), (80, "", "34")], "groups differ in content.k.map, too."),
+    ],
+)  # fmt: skip
+def test_files_are_what_they_hold_not_where_they_lie(try_out, tmp_path, capsys, known, said):
+    for population, path, content in known:
+        changes = {"planner.population": population, **({"planner.known": path} if path else {})}
+        folder = try_out(tmp_path, changes, experiment=f"on{content}")
+        sign(folder, method_inputs={path or "a/k.map": content * 32})
+    compare(tmp_path, "--by", "planner.population")
+    text = capsys.readouterr().out
+    assert said in text
+    assert ("too." in text) == ("too." in said)
+
+
+def test_a_condition_names_a_setting_by_its_whole_name(try_out, tmp_path, capsys):
+    for population, pop in ((40, 1), (80, 2)):
+        try_out(tmp_path, {"planner.population": population, "planner.pop": pop})
+    compare(tmp_path, "--where=Planner.population = 40", "--where=planner.population > 40")
+    assert "The groups differ in planner.pop, too." in capsys.readouterr().out
+
+
+def test_values_of_every_kind_have_an_order(try_out, tmp_path, capsys):
+    for value in ("b", "", None, 0, 7):
+        try_out(tmp_path, {"planner.kind": value}, n=12)
+    compare(tmp_path, "--by", "planner.kind", "--measure", "success", into=tmp_path / "it")
+    pairs = pd.read_csv(tmp_path / "it" / "comparison.csv", keep_default_na=False)
+    assert list(pairs["second"].head(4)) == ["7", "", "b", "null"]
+
+
 def test_groups_without_a_common_seed_are_compared_unpaired(try_out, tmp_path, capsys):
     for seed, population in ((1, 40), (2, 160)):
         try_out(tmp_path, {"planner.population": population}, seed=seed)
@@ -245,8 +282,11 @@ def test_runs_that_are_left_out_are_named(try_out, tmp_path, capsys):
         (["--where", "seed = 0"], "1 --where and no --by"),
         (["--by", "map", "--where", "seed = 0", "--where", "seed = 1"], "joined by and"),
         (["--by", "map", "--where", "seed = 3"], "a condition that a run fulfils"),
-        (["--by", "map", "--where", "sed = 3"], "did you mean seed?"),
-        (["--by", "map", "--where", "seed ="], "where: got seed =, expected SQL"),
+        (
+            ["--by", "map", "--where", "sed = 3"],
+            "--where: got sed = 3, expected a column in place of sed; did you mean seed?",
+        ),
+        (["--by", "map", "--where", "seed ="], "gapath-report: --where: got seed =, expected SQL"),
         (["--where", "seed = 0", "--where", "seed = 3"], "a condition that a run fulfils"),
         (["--where", "seed = 0", "--where", "map = 'kg18_test1'"], "in two groups"),
         (["--by", "map", "--measure", "sucess"], "did you mean success?"),
