@@ -117,7 +117,8 @@ class Table:
 
     def markdown(self) -> str:
         """Write the text of the cells as Markdown."""
-        return f"{self.shown.to_markdown(index=False, disable_numparse=True)}\n\n{self.caption}\n"
+        text = self.shown.rename(columns=_in_cell).map(_in_cell)
+        return f"{text.to_markdown(index=False, disable_numparse=True)}\n\n{self.caption}\n"
 
     def latex(self) -> str:
         """Write the text of the cells as LaTeX (booktabs)."""
@@ -212,6 +213,11 @@ def _find(*patterns: str) -> list[ModuleType]:
     paths = sorted(path for pattern in patterns for path in top.rglob(pattern))
     names = [".".join(path.relative_to(top).with_suffix("").parts) for path in paths]
     return [importlib.import_module(f"gapath.pipelines.{name}") for name in names]
+
+
+def _in_cell(text: str) -> str:
+    """Write text for a cell of Markdown, which a bar would end."""
+    return text.replace("|", r"\|")
 
 
 def _escape(text: str) -> str:

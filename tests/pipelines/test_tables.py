@@ -1,4 +1,5 @@
 import math
+import re
 
 import pandas as pd
 import pytest
@@ -145,6 +146,13 @@ def test_the_three_forms_of_a_table():
     for text in (r"A\_b", r"x \& y", r"$\infty$", r"1\,000", "$<$ 0.1", r"100 \% of it", "toprule"):
         assert text in latex
     assert latex.isascii()
+
+
+def test_a_bar_ends_no_cell_of_markdown():
+    shown = pd.DataFrame({"a | b": ["x || y"], "c": ["1"]})
+    head, _, row = Table("name", "It.", shown, shown).markdown().splitlines()[:3]
+    cells = [[cell.strip() for cell in re.split(r"(?<!\\)\|", line)] for line in (head, row)]
+    assert cells == [["", r"a \| b", "c", ""], ["", r"x \|\| y", "1", ""]]
 
 
 def test_of_very_many_rows_people_are_shown_the_first_and_told_so():
