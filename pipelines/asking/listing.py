@@ -90,9 +90,9 @@ def importance(rows: pd.DataFrame) -> dict[str, int]:
     """Tell how important the columns of a list are: all that it may do without."""
     names = ("experiment", "task", "map", "preset", "method", "seed", "state")
     same = [name for name in names if name in rows and not _varies(rows, name)]
-    settings = [name for name in rows if "." in name]
     last = ["date", "start", "target", "trials", "seed", "superseded", "map_instance"]
     best = ["task", "experiment", "state", "map", "method", "preset", "success"]
+    settings = [name for name in rows if name not in ("key", *METRICS, *last, *best)]
     order = [*reversed(METRICS), *reversed(same), *last, *reversed(settings), *best]
     return {name: order.index(name) for name in rows if name != "key"}
 

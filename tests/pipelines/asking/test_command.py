@@ -4,14 +4,17 @@ import csv
 import io
 import json
 import shutil
+from importlib.resources import files
 
 import pandas as pd
 import pytest
+import yaml
 
 from gapath.pipelines.asking.answer import Answer, write_text
 from gapath.pipelines.asking.listing import short_keys
 from gapath.pipelines.numbers.text import NOTHING
 
+from ..conftest import summed
 from .conftest import rows_of, spoiled
 
 
@@ -68,6 +71,24 @@ def test_a_list_is_as_wide_as_the_terminal(ask, width, monkeypatch):
     assert max(map(len, out.splitlines())) <= width
     assert "0abcde" in out and (width < 60 or "success" in out)
     assert ("optimality" in out) == (width >= 140)
+
+
+CONFIG = yaml.safe_load((files("gapath.conf") / "config.yaml").read_text("utf-8"))
+TOP = [name for name, value in CONFIG.items() if not isinstance(value, dict | list)]
+
+
+@pytest.mark.parametrize("name", [*TOP, "of_a_plugin"])
+def test_any_setting_may_vary(ask, tmp_path, make_run, name, monkeypatch):
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True, raising=False)
+    monkeypatch.setattr(shutil, "get_terminal_size", lambda: shutil.os.terminal_size((200, 20)))
+    for i, value in enumerate(("one", "two")):
+        run = make_run(tmp_path, "e", "kg18_test1", "ga1", n=2, log=False, key=value, seed=i)
+        config = yaml.safe_load((run / "config.yaml").read_text()) | {name: value}
+        (run / "config.yaml").write_text(yaml.safe_dump(config))
+        summed(run)
+    code, out, said = ask(folder=tmp_path)
+    assert (code, said, len(out.splitlines())) == (0, "", 4)
+    assert name in (*out.splitlines()[0].split(), "task", "name")  # which manifests say
 
 
 def test_long_texts_are_shortened_at_last():
@@ -129,6 +150,10 @@ def test_a_run_is_asked_for_by_the_beginning_of_its_key(ask, tmp_path, make_run)
         (["--sql", "select sum(feasble) from trials"], "did you mean feasible?"),
         (["--sql", "select * from run"], "SQL that can be answered (Catalog Error"),
         (["--sql", "selec 1"], "SQL that can be answered (Parser Error"),
+        (
+            ["--sql", "select 1 as a, 2 as a", "--json"],
+            "--json: got two columns a, expected another",
+        ),
         (["--sql", ""], "expected one SELECT over the tables runs and trials"),
         (["--sql", "select 1; select 2"], "expected one SELECT over"),
         (["--sql", "drop table runs"], "expected one SELECT over"),
