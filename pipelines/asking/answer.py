@@ -8,6 +8,7 @@ from typing import Any, NamedTuple, TextIO
 
 import pandas as pd
 
+from gapath.errors import require
 from gapath.pipelines.numbers.text import NOTHING, number
 
 _GAP = "  "
@@ -40,7 +41,16 @@ def _lower(value: Any) -> Any:
 
 
 def write_json(answer: Answer, file: TextIO) -> None:
-    """Write a list of objects, one a row; null where there is no value, or no finite one."""
+    """Write a list of objects, one a row; null where there is no value, or no finite one.
+
+    Raises
+    ------
+    InputError
+        If two columns have one name: an object has each once.
+    """
+    for name in answer.names:
+        once = answer.names.count(name) == 1
+        require(once, "--json", f"two columns {name}", "another name for one of them, with as")
     columns = [map(_finite, column) for column in answer.columns]
     rows = [dict(zip(answer.names, row, strict=True)) for row in zip(*columns, strict=True)]
     json.dump(rows, file, indent=2, default=str)

@@ -1,6 +1,7 @@
 """Questions in SQL to runs and their trials, straight from the files."""
 
 from collections.abc import Iterable, Sequence
+from decimal import Decimal
 from typing import Any
 
 import pandas as pd
@@ -95,7 +96,16 @@ def _answered(
             if any(file in str(error) for file in files):
                 raise
             raise refusal(error, text, columns, WHERE) from error
-    return Answer(names, [[row[i] for row in rows] for i in range(len(names))])
+    return Answer(names, [[_plain(row[i]) for row in rows] for i in range(len(names))])
+
+
+def _plain(value: Any) -> Any:
+    """Give decimals, which are sums and numbers with a point in DuckDB, as other numbers are."""
+    if isinstance(value, list):
+        return [_plain(each) for each in value]
+    if isinstance(value, dict):
+        return {name: _plain(each) for name, each in value.items()}
+    return float(value) if isinstance(value, Decimal) else value
 
 
 def _alike(runs: Iterable[RunRecord], files: Iterable[str]) -> list[list[str]]:

@@ -72,6 +72,13 @@ def test_columns_that_some_runs_lack_are_null_and_types_are_kept(tmp_path, make_
     ]
 
 
+def test_decimals_are_numbers_as_others_are(ask):
+    text = "select 1.5 as a, sum(2::decimal(9, 3)) as b, [0.25] as c, {'d': 0.5} as e"
+    assert rows_of(ask, "--sql", text) == [{"a": 1.5, "b": 2.0, "c": [0.25], "e": {"d": 0.5}}]
+    assert ask("--sql", "select 1.50 as a, 2.000 as b", "--csv")[1] == "a,b\n1.5,2.0\n"
+    assert ask("--sql", "select 2.000 as b")[1].split()[-1] == "2"
+
+
 def test_trials_that_cannot_be_read_are_left_out_by_name(tmp_path, outputs, ask):
     shutil.copytree(outputs, tmp_path / "o")
     bad = [
