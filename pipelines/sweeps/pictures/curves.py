@@ -67,6 +67,7 @@ def curves(view: View) -> Figure:
     lines = list(view.series())[:LINES]
     look = looks_of([name for name, _ in lines])
     levels = _levels(view, factor)
+    drawn = set(map(repr, levels))
     draw = _draw_curves if factor.numeric else _draw_points
     high = 1.75 if factor.numeric else 0.75 + (0.14 + 0.07 * len(lines)) * len(levels)
     with style():
@@ -76,7 +77,7 @@ def curves(view: View) -> Figure:
         )
         for panel, quantity in zip(axes.flat, shown, strict=True):
             for i, (name, rows) in enumerate(lines):
-                mine = rows[rows[factor.name].isin(levels)] if not factor.numeric else rows
+                mine = rows if factor.numeric else rows[rows[factor.name].map(repr).isin(drawn)]
                 draw(panel, mine, (factor, quantity), look[name], (i, len(lines)))
             _finish(panel, factor, quantity, levels)
         if factor.numeric:
@@ -97,9 +98,15 @@ def _levels(view: View, factor: Factor) -> list[Any]:
     """Give the values that are drawn; of many without an order those that succeed most."""
     if factor.numeric or len(factor.levels) <= POINTS:
         return list(factor.levels)
-    means = view.cells.groupby(factor.name)["success"].mean().sort_values(ascending=False)
-    best = set(means.index[:POINTS])
-    return [level for level in factor.levels if level in best]
+    return succeed_most(view, factor, POINTS)
+
+
+def succeed_most(view: View, factor: Factor, most: int) -> list[Any]:
+    """Give the values without an order that succeed most, in the order of the factor's levels."""
+    names = view.cells[factor.name].map(repr)  # null is a value, too
+    means = view.cells["success"].groupby(names).mean().sort_values(ascending=False, kind="stable")
+    best = set(means.index[:most])
+    return [level for level in factor.levels if repr(level) in best]
 
 
 def _draw_curves(

@@ -14,7 +14,7 @@ from gapath.pipelines.numbers.text import percent
 from gapath.pipelines.page.figures import Look, looks_of, panels, render, style
 from gapath.pipelines.page.section import Figure
 from gapath.pipelines.sweeps.measures import Effort
-from gapath.pipelines.sweeps.pictures.curves import LINES, WIDE, plain, wide
+from gapath.pipelines.sweeps.pictures.curves import LINES, WIDE, plain, succeed_most, wide
 from gapath.pipelines.sweeps.varied import Factor
 from gapath.pipelines.sweeps.view import View, text
 
@@ -92,8 +92,7 @@ def _looks(view: View, factor: Factor) -> dict[str, Look]:
         colors = matplotlib.colormaps["viridis"](np.linspace(0.25, 0.88, len(levels)))
         hexes = [matplotlib.colors.to_hex(color) for color in colors]
         return {repr(v): Look(color, "-") for v, color in zip(levels, hexes, strict=True)}
-    means = view.cells.groupby(factor.name)["success"].mean().sort_values(ascending=False)
-    best = {repr(level) for level in means.index[:LINES]}
+    best = set(map(repr, succeed_most(view, factor, LINES)))
     return looks_of([repr(level) for level in factor.levels if repr(level) in best])
 
 

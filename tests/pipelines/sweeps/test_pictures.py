@@ -82,3 +82,27 @@ def test_many_maps_are_drawn_together():
     assert [len(keys) for keys in rows.runs[:3]] == [8, 8, 1]
     assert section.text[1].startswith("Most often found: GA 2, 100 (95.4 to 100.0) %.")
     assert "GA 1 50 %" in by_name(section, "effort").alt
+
+
+@pytest.mark.parametrize("values", [[None, "", "a", "b"], [None, "", *"abcdefgh"]])
+def test_null_is_a_value_of_which_a_curve_is_drawn(monkeypatch, values):
+    drawn = []
+    monkeypatch.setattr(shares, "_draw", lambda *given: drawn.append(given))
+    tried = [Tried(changes=each, success=0.9 - 0.05 * i) for i, each in enumerate(grid(of=values))]
+    (view,) = table.views_of(*planned(tried))
+    figure = shares.shares(view)
+    most = min(len(values), curves.LINES)
+    assert len(drawn) == most and "null 90 %" in figure.alt
+    assert (f"{most} of {len(values)} values" in figure.caption) == (most < len(values))
+
+
+def test_null_may_be_among_the_values_that_succeed_most(monkeypatch):
+    monkeypatch.setattr(curves, "POINTS", 3)
+    tried = [Tried(changes=each, success=0.9 - 0.1 * i)
+             for i, each in enumerate(grid(of=[None, "a", "", "b", "c"]))]  # fmt: skip
+    (view,) = table.views_of(*planned(tried))
+    drawn = []
+    monkeypatch.setattr(curves, "_draw_points", lambda _, rows, *rest: drawn.append(rows))
+    figure = curves.curves(view)
+    assert {tuple(map(repr, rows["planner.of"])) for rows in drawn} == {("None", "'a'", "''")}
+    assert "the 3 of 5 values that succeed most are drawn" in figure.caption
