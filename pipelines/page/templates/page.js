@@ -91,11 +91,12 @@
     const cells = [];
     field.lastIndex = 0;
     for (let found; (found = field.exec(line)); ) {
-      cells.push(found[1].replace(/^"|"$/g, "").replaceAll('""', '"'));
+      cells.push(found[1].replace(/^(-?)inf$/, "$1Infinity").replace(/^"|"$/g, "").replaceAll('""', '"'));
       if (found[2] === "") break;
     }
     return cells;
   }
+  const rounded = (text) => (/^-?\d+$/.test(text) ? text : String(Number(Number(text).toPrecision(5))).replace("Infinity", "\u221e"));
   function tabulate(lines) {
     const [names, ...rows] = lines.textContent.trim().split("\n").map(values);
     const table = make("table", {}, make("caption", { id: "trials-caption" }, make("span", {}, lines.dataset.caption)));
@@ -114,7 +115,7 @@
       row.forEach((value, i) => {
         const cell = i ? line.insertCell() : line.appendChild(make("th", { scope: "row", className: "head own" }));
         if (!numbers[i]) cell.classList.add("text");
-        cell.textContent = value === "" ? "\u2013" : numbers[i] ? String(Number(Number(value).toPrecision(5))) : value;
+        cell.textContent = value === "" ? "\u2013" : numbers[i] ? rounded(value) : value;
         if (numbers[i]) cell.dataset.order = value;
       });
     }

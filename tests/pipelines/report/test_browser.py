@@ -17,6 +17,8 @@ from gapath.pipelines.page.page import Part, render
 from gapath.pipelines.page.section import Section, Table
 from gapath.pipelines.report.report import make_report
 
+from ..conftest import summed
+
 BROWSER = next(
     (
         path
@@ -324,6 +326,21 @@ def test_a_row_of_several_runs_leads_to_their_list(opened, report):
     assert "kept no log" in page.locator("#stills").inner_text()
     assert page.locator("#trials tbody tr").count() == 200
     assert "The first 200 of 250 trials" in page.locator("#trials caption").inner_text()
+
+
+def test_numbers_of_trials_are_whole_or_without_end_as_they_were(opened, tmp_path, make_run):
+    run = make_run(tmp_path, "mine", "kg18_test2", "ga3", n=4, log=False)
+    rows = pd.read_parquet(run / "trials.parquet")
+    costs, counts = [math.inf, 9.0, 1234567.25, 12.0], [390385, 7, 100001, 2**53 + 1]
+    rows.assign(cost=costs, evaluations=counts).to_parquet(run / "trials.parquet")
+    summed(run)
+    files, _ = make_report(tmp_path, tmp_path / "report")
+    page = opened(path=files[-1].parent / "runs" / f"{run.name}.html")
+    column = column_of(page, "evaluations", "#trials")
+    assert texts(page, column, "#trials") == [str(count) for count in counts]
+    column = column_of(page, "cost", "#trials")
+    sort(page, column, "ascending", "#trials")
+    assert texts(page, column, "#trials") == ["9", "12", "1234600", "\N{INFINITY}"]
 
 
 def test_without_scripts_everything_is_there(opened, report):
