@@ -26,7 +26,7 @@ from gapath.store.records import RunRecord, find_runs
 _PAPERS = {"kg18": "KG18", "s04": "S04", "m22": "M22"}
 """Rooms of `pipelines`, and what the menu calls them."""
 
-_OTHERS = "Any experiment"
+_OTHERS = "Own experiments"
 
 
 def make_report(outputs: Path, folder: Path) -> tuple[list[Path], list[Skipped]]:
