@@ -268,7 +268,7 @@ class GridMap(Shown):
         ax = axes_for(ax)
         draw_map(ax, self.weights)
         mark_ends(ax, self.start, self.target)
-        ax.set_title(self.name)
+        ax.set_title(self.name, parse_math=False)  # a name may have dollars
         return ax
 
     def _told(self) -> dict[str, object]:

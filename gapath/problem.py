@@ -274,9 +274,9 @@ class Plan(Answer, Shown):
         ax = problem.plot(ax)
         if self.feasible:
             draw_path(ax, self.path, self.lines())
-            ax.set_title(f"{problem.map.name}: a path of cost {self.cost:g}")
+            ax.set_title(f"{problem.map.name}: a path of cost {self.cost:g}", parse_math=False)
         else:
-            ax.set_title(f"{problem.map.name}: {self.status.sentence}")
+            ax.set_title(f"{problem.map.name}: {self.status.sentence}", parse_math=False)
         return ax
 
     def convergence(self, ax: "Axes | None" = None) -> "Axes":

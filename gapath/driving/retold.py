@@ -100,7 +100,8 @@ class Drive(Shown):
         ax, known = self.problem.plot(ax), self.known()
         draw_unknown(ax, np.isnan(known))
         draw_path(ax, self.path, no_path())
-        ax.set_title(f"{self.problem.map.name}: {self._end.ending} after {self.steps} steps")
+        told = f"{self.problem.map.name}: {self._end.ending} after {self.steps} steps"
+        ax.set_title(told, parse_math=False)
         return ax
 
     def animate(self) -> "Animation":

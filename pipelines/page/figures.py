@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Canvas
 from matplotlib.lines import Line2D
+from matplotlib.ticker import LogFormatterMathtext
 from numpy.typing import ArrayLike
 
 from gapath.pipelines.numbers.statistics import share_within
@@ -41,6 +42,7 @@ _STYLE = {
     "axes.axisbelow": True,
     "legend.frameon": False,
     "lines.linewidth": 1.8,
+    "text.parse_math": False,  # names of maps may have dollars
     "svg.hashsalt": "gapath",  # else the ids in the file are drawn at random
 }
 
@@ -164,6 +166,7 @@ def render(canvas: Canvas) -> tuple[bytes, bytes]:
     (svg, png) : bytes
         The two files.
     """
+    _raise_powers(canvas)
     files = []
     for kind, metadata in (("svg", {"Date": None, "Creator": None}), ("png", {"Software": None})):
         stream = io.BytesIO()
@@ -171,6 +174,20 @@ def render(canvas: Canvas) -> tuple[bytes, bytes]:
         files.append(stream.getvalue())
     return files[0], files[1]
 
+
+def _raise_powers(canvas: Canvas) -> None:
+    """Let the powers of ten be formulas that matplotlib writes along logarithmic axes."""
+    for axis in (axis for panel in canvas.axes for axis in (panel.xaxis, panel.yaxis)):
+        for formatter, ticks in (
+            (axis.get_major_formatter(), axis.get_major_ticks),
+            (axis.get_minor_formatter(), axis.get_minor_ticks),
+        ):
+            for tick in ticks(_TICKS) if isinstance(formatter, LogFormatterMathtext) else ():
+                tick.label1.set_parse_math(True)
+
+
+_TICKS = 40
+"""An axis has no more with a label."""
 
 _SCHEME = (
     f"svg{{--i:{INK};--p:#ffffff;--g:{GRID}}}"

@@ -40,6 +40,18 @@ def test_what_is_shown_leaves_no_figure_open():
     assert pyplot.get_fignums() == before
 
 
+def test_dollars_in_a_name_are_no_formula():
+    weights = np.zeros((5, 5))
+    free = gapath.GridMap("a$b_$x", weights, (0, 0), (4, 4))
+    walled = gapath.GridMap("a$b_$x", np.where(np.arange(5) == 2, 1.0, weights), (0, 0), (4, 4))
+    drive = gapath.drive(free, navigator="replan_astar")
+    plans = [gapath.plan(grid, planner="astar") for grid in (free, walled)]
+    for shown in (free, *plans, drive):
+        assert "data:image/png;base64," in shown._repr_html_()
+        axes = shown.plot(Figure().subplots())
+        assert axes.get_title().startswith("a$b_$x") and not axes.title.get_parse_math()
+
+
 def test_a_plot_has_a_figure_of_its_own_or_the_axes_that_it_is_given():
     axes = axes_for(None)
     assert axes.figure.number in pyplot.get_fignums()

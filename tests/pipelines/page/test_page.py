@@ -6,6 +6,7 @@ import re
 import tomllib
 from pathlib import Path
 
+import matplotlib
 import pandas as pd
 import pytest
 
@@ -158,3 +159,20 @@ def test_a_wheel_has_whatever_the_page_is_made_of():
         path for path in page.rglob("*") if path.is_file() and path.suffix not in (".py", ".pyc")
     }
     assert len(needed) > 8 and needed <= packed
+
+
+def test_powers_of_ten_are_formulas_along_logarithmic_axes_though_names_are_none():
+    def drawn(**more):
+        with style(), matplotlib.rc_context(more):
+            canvas, axes = panels(2, height=2, same_axes=False)
+            for panel, most in zip(axes, (3.0, 1e6), strict=True):
+                panel.plot([1, most], [1, most])
+                panel.set(xscale="log", yscale="log", title="a map")
+            return render(canvas)
+
+    assert drawn() == drawn(**{"text.parse_math": True})
+    with style():
+        canvas, (panel,) = panels(1, height=2)
+        panel.set(title="a$b_$x", xscale="log")
+        svg, _ = render(canvas)
+    assert b"a$b_$x" in svg

@@ -106,3 +106,12 @@ def test_null_may_be_among_the_values_that_succeed_most(monkeypatch):
     figure = curves.curves(view)
     assert {tuple(map(repr, rows["planner.of"])) for rows in drawn} == {("None", "'a'", "''")}
     assert "the 3 of 5 values that succeed most are drawn" in figure.caption
+
+
+def test_dollars_in_the_names_of_maps_and_values_are_no_formula():
+    tried = [
+        Tried(changes=each, map=name)
+        for name in ("a$b_$x", "c$d_$y")
+        for each in grid(population=[20, 90], of=["$_$", "e"])
+    ]
+    assert [len(section.figures) > 1 for section in sections(tried)] == [True]
