@@ -20,11 +20,22 @@ from gapath.pipelines.compare.tables import (
 )
 from gapath.pipelines.compare.words import WORDINGS, sentences
 from gapath.pipelines.numbers.comparable import comparable
-from gapath.pipelines.numbers.comparison import Comparison, compare
+from gapath.pipelines.numbers.comparison import QUANTITIES, Comparison, compare
 from gapath.pipelines.numbers.groups import Groups, overlap, side_by_side
 from gapath.pipelines.numbers.text import number, span
 from gapath.pipelines.page.page import files_of
 from gapath.pipelines.page.section import Section, Table
+
+NAMES = frozenset(
+    ["groups.csv"]
+    + [f"{table}.{suffix}" for table in ("comparison", "maps") for suffix in ("csv", "md", "tex")]
+    + [
+        f"comparison_{each}.{suffix}"
+        for each in (*QUANTITIES, "ranks")
+        for suffix in ("svg", "png")
+    ]
+)
+"""The files that answers have, none of them all."""
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,12 @@
 """The command `gapath-report compare`."""
 
 import argparse
+import hashlib
 import json
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 from gapath.errors import InputError, one_of, require
 
@@ -17,6 +17,9 @@ MEASURES = {
     "cost": ("cost",),
 }
 """What `--measure` may name, and the quantities that belong to it."""
+
+PAGE = "comparison.md"
+"""The file that holds all of an answer, and leads to its others."""
 
 _ROWS = 12
 """Rows of a table in the terminal; its files have all."""
@@ -45,7 +48,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def run(arguments: Sequence[str]) -> None:
-    """Compare, print what was found, and write it.
+    """Compare, print what was found, then write it.
 
     Parameters
     ----------
@@ -55,7 +58,7 @@ def run(arguments: Sequence[str]) -> None:
     Raises
     ------
     InputError
-        If the arguments are wrong, or the runs make no two groups.
+        If the arguments are wrong, the runs make no two groups, or nothing can be written.
     """
     given = parser().parse_args(list(arguments))
     measures = list(MEASURES) if given.measure == "all" else given.measure.split(",")
@@ -69,22 +72,32 @@ def run(arguments: Sequence[str]) -> None:
     found: Answer = answer(given.outputs, given.by, given.where, quantities)
     for name, reason in found.choice.left_out:
         print(f"left out {name}: {reason}", file=sys.stderr)
-    files = found.files()
+    print(json.dumps(found.plain(), indent=1) if given.json else found.text(_ROWS), flush=True)
+    files = dict(found.files())
     try:
-        from gapath.store.durable import write_whole
-
-        folder.mkdir(parents=True, exist_ok=True)
-        for name, content in files:
-            write_whole(folder / name, content)
+        _write(folder, files)
     except OSError as error:
         raise InputError(folder, error.strerror, "a folder that can be written") from error
-    if given.json:
-        print(json.dumps(found.plain(), indent=1))
-        return
-    print(found.text(_ROWS))
-    print(f"{len(files)} files in {folder}; read {folder / 'comparison.md'}")
+    if not given.json:
+        print(f"{len(files)} files in {folder}; read {folder / PAGE}")
+
+
+def _write(folder: Path, files: Mapping[str, bytes]) -> None:
+    """Write an answer's files, and remove those that only an older answer there had."""
+    from gapath.pipelines.compare.answer import NAMES
+    from gapath.store.durable import write_whole
+
+    older = NAMES.difference(files) if (folder / PAGE).exists() else ()
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, content in files.items():
+        write_whole(folder / name, content)
+    for name in older:
+        (folder / name).unlink(missing_ok=True)
 
 
 def _name(by: str | None, wheres: Sequence[str]) -> str:
-    words: list[Any] = [*([by] if by else []), *wheres]
-    return "_".join(re.sub(r"[^\w.]+", "-", word).strip("-") for word in words)[:80]
+    """Name a question's folder: to be read, with a hash where that does not say all of it."""
+    words = [*([by] if by else []), *wheres]
+    text = "_".join(re.sub(r"[^\w.]+", "-", word).strip("-") for word in words)[:80]
+    whole = json.dumps([by, *wheres]).encode()
+    return text if text == by else f"{text}_{hashlib.sha256(whole).hexdigest()[:6]}"

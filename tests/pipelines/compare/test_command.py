@@ -12,6 +12,7 @@ import pytest
 import yaml
 from scipy import stats
 
+from gapath.pipelines.compare.answer import NAMES
 from gapath.pipelines.report.cli import main
 
 from ..conftest import sign
@@ -97,6 +98,7 @@ def test_the_best_comes_first_and_says_from_which_it_can_be_told_apart(sweep, tm
 def test_every_file_says_the_same(sweep, tmp_path):
     compare(sweep, "--by", "planner.population", into=tmp_path)
     names = {path.name for path in tmp_path.iterdir()}
+    assert names <= NAMES
     assert {"comparison.csv", "comparison.md", "comparison.tex", "groups.csv", "maps.csv"} <= names
     for quantity in ("success", "expected_evaluations", "expected_time", "cost"):
         svg = (tmp_path / f"comparison_{quantity}.svg").read_text("utf-8")
@@ -130,8 +132,40 @@ def test_without_a_folder_it_writes_beside_the_runs_and_finds_them_again(sweep, 
         compare(outputs, "--by", "planner.population", "--where", "map = 'kg18_test1'")
         text = capsys.readouterr()
         assert "240 trials of plan on kg18_test1" in text.out
-        assert "compare/planner.population_map-kg18_test1/comparison.md" in text.out
+        where = r"compare/planner.population_map-kg18_test1_[0-9a-f]{6}/comparison.md"
+        assert re.search(where, text.out)
         assert text.err == ""
+
+
+def test_each_question_has_a_folder_of_its_own(sweep, tmp_path, capsys):
+    outputs = tmp_path / "outputs"
+    shutil.copytree(sweep, outputs)
+    names = "planner.population in (40, 80) and map = 'kg18_test1' and seed = 0 and trials = 60 and"
+    conditions = ["seed<5", "seed != 5", "seed < 5", f"{names} seed < 5", f"{names} seed < 6"]
+    for condition in conditions:
+        compare(outputs, "--by", "planner.population", "--where", condition, "--measure", "success")
+    compare(outputs, "--by", "planner.population", "--measure", "success")
+    folders = [path.name for path in (outputs / "compare").iterdir()]
+    assert len(folders) == len(conditions) + 1
+    assert "planner.population" in folders
+
+
+def test_nothing_of_an_older_comparison_stays(sweep, tmp_path, capsys):
+    into = tmp_path / "it"
+    compare(sweep, "--by", "planner.population", into=into)
+    mine = {"notes.md", "comparison_mine.svg"}
+    for name in mine:
+        (into / name).write_text("mine")
+    plain = tmp_path / "other"
+    plain.mkdir()
+    (plain / "maps.csv").write_text("mine")
+    only = "--where=map = 'kg18_test1'"
+    for folder, kept in ((into, mine), (plain, {"maps.csv"})):
+        compare(sweep, "--by", "planner.population", only, "--measure", "cost", into=folder)
+        compare(sweep, "--by", "planner.population", only, "--measure", "cost",
+                into=tmp_path / "fresh")  # fmt: skip
+        fresh = {path.name for path in (tmp_path / "fresh").iterdir()}
+        assert {path.name for path in folder.iterdir()} == fresh | kept
 
 
 def test_groups_by_conditions(sweep, tmp_path, capsys):
@@ -306,9 +340,14 @@ def test_a_folder_without_runs_or_with_a_file_in_the_way_is_refused(sweep, tmp_p
     assert main(["compare", str(tmp_path / "none"), "--by", "map"]) == 2
     (tmp_path / "file").write_text("")
     assert main(["compare", str(sweep), "--by", "map", "-o", str(tmp_path / "file")]) == 2
-    errors = capsys.readouterr().err.splitlines()
+    text = capsys.readouterr()
+    errors = text.err.splitlines()
     assert "no such folder" in errors[0]
     assert "a folder that can be written" in errors[1]
+    assert "map: 2 groups, 480 trials" in text.out
+    assert "files in" not in text.out
+    assert main(["compare", str(sweep), "--by", "map", "--json", "-o", str(tmp_path / "file")]) == 2
+    assert json.loads(capsys.readouterr().out)["heading"].startswith("map: 2 groups")
 
 
 def test_runs_of_two_tasks_have_to_be_chosen_from(try_out, make_drive_run, tmp_path, capsys):
