@@ -18,7 +18,7 @@ from gapath.pipelines.compare.tables import (
     table_by_map,
     whole_table,
 )
-from gapath.pipelines.compare.words import WORDINGS, sentences
+from gapath.pipelines.compare.words import WORDINGS, sentences, some
 from gapath.pipelines.numbers.comparable import comparable
 from gapath.pipelines.numbers.comparison import QUANTITIES, Comparison, compare
 from gapath.pipelines.numbers.groups import Groups, overlap, side_by_side
@@ -194,9 +194,9 @@ def _limits(choice: Choice, groups: Groups) -> list[str]:
     if groups.repeated:
         found.append(f"{number(groups.repeated)} trials were done twice and count once.")
     if choice.beside:
-        found.append(f"The groups differ in {', '.join(choice.beside)}, too.")
+        found.append(f"The groups differ in {some(choice.beside)}, too.")
     if choice.also:
-        found.append(f"Each group holds several values of {', '.join(choice.also)}.")
+        found.append(f"Each group holds several values of {some(choice.also)}.")
     if groups.problems > 1:
         found.append(
             f"Intervals are over the trials of these {groups.problems} problems, not over problems "

@@ -15,6 +15,17 @@ _FINDS = {"feasible": "finds a path", "reached": "reaches the target"}
 """What a trial that succeeds does, by the column that says so."""
 
 
+_BY = {
+    "McNemar, exact": "by the exact test of pairs",
+    "score test": "by the score test",
+    "Fisher, exact": "by the exact test",
+    "Wilcoxon, signed rank": "by the ranks of all differences",
+    "Mann-Whitney": "by the ranks of all trials",
+    "bootstrap": "by the standard error",
+}
+"""What a test goes by, where an interval says something else."""
+
+
 class Wording(NamedTuple):
     """How a quantity is written."""
 
@@ -118,15 +129,14 @@ def _leading(comparison: Comparison, best: Estimate, success: str) -> str:
     wording = WORDINGS[comparison.quantity]
     assert best.value is not None
     value = wording.value(best.value)
-    if best.low is not None and best.high is not None:
-        value += f" ({wording.span(best.low, best.high).removesuffix(' %')})"
     tied = [
-        each.group
-        for each in comparison.estimates
-        if (each.value, each.rank) == (best.value, best.rank)
+        each for each in comparison.estimates if (each.value, each.rank) == (best.value, best.rank)
     ]
+    of_all = len({(each.low, each.high) for each in tied}) == 1
+    if of_all and best.low is not None and best.high is not None:
+        value += f" ({wording.span(best.low, best.high).removesuffix(' %')})"
     if len(tied) > 1:
-        return f"{_some(tied)} share the first place: {value}."
+        return f"{some([each.group for each in tied])} share the first place: {value}."
     does = _FINDS.get(success, "succeeds") + " most often"
     if comparison.quantity != "success":
         does = wording.least
@@ -172,7 +182,7 @@ def _apart(pairs: Sequence[Pair], quantity: str, success: str) -> str:
 def _alike(pairs: Sequence[Pair], quantity: str) -> str:
     best, by = pairs[0].first, _counted(pairs)
     if len(pairs) > _FEW:
-        return f"{best} cannot be told apart{by} from {_some([pair.second for pair in pairs])}."
+        return f"{best} cannot be told apart{by} from {some([pair.second for pair in pairs])}."
     names = [f"{pair.second} ({_sized(pair, quantity)})" for pair in pairs]
     return f"{best} cannot be told apart{by} from {_listed(names)}."
 
@@ -187,6 +197,7 @@ def _counted(pairs: Sequence[Pair]) -> str:
 def _sized(pair: Pair, quantity: str) -> str:
     """Say how large a difference is, without saying that there is one."""
     told = probability(pair.adjusted) if pair.adjusted is not None else ""
+    told += _although(pair, quantity)
     if pair.difference.effect is None:
         return told
     if quantity != "success":
@@ -198,6 +209,16 @@ def _sized(pair: Pair, quantity: str) -> str:
         else f"{number(pair.difference.effect)} times"
     )
     return ", ".join(each for each in (size, effect_span(pair, quantity), told) if each)
+
+
+def _although(pair: Pair, quantity: str) -> str:
+    """Say why two cannot be told apart although the interval of the effect leaves that out."""
+    found, equal = pair.difference, 0 if quantity == "success" else 1
+    if found.p is None or pair.adjusted is None or pair.adjusted < LEVEL:
+        return ""
+    if found.low is None or found.high is None or found.low <= equal <= found.high:
+        return ""
+    return f" {_BY[found.test]}" if found.p >= LEVEL else f", {probability(found.p)} before Holm"
 
 
 def _size(pair: Pair, quantity: str) -> float:
@@ -232,7 +253,7 @@ def _missing(comparison: Comparison) -> Iterable[str]:
         if each.why:
             reasons.setdefault(each.why, []).append(each.group)
     for why, groups in reasons.items():
-        yield f"{_some(groups)}: {why}."
+        yield f"{some(groups)}: {why}."
     known = {each.group for each in comparison.estimates if each.value is not None}
     if len(known) == 1 and len(comparison.estimates) > 1:
         yield f"Only {known.pop()} has a number, so there is nothing to compare it with."
@@ -241,10 +262,11 @@ def _missing(comparison: Comparison) -> Iterable[str]:
         if pair.difference.p is None:
             pairs.setdefault(pair.difference.why, []).append(f"{pair.first} and {pair.second}")
     for why, names in pairs.items():
-        yield f"No test of {_some(names)}: {why}."
+        yield f"No test of {some(names)}: {why}."
 
 
-def _some(names: Sequence[str]) -> str:
+def some(names: Sequence[str]) -> str:
+    """List names, the first few of many."""
     if len(names) <= _FEW:
         return _listed(names)
     return f"{', '.join(names[:_FEW])} and {len(names) - _FEW} more"

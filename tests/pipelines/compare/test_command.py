@@ -254,6 +254,16 @@ def test_values_of_every_kind_have_an_order(try_out, tmp_path, capsys):
     assert list(pairs["second"].head(4)) == ["7", "", "b", "null"]
 
 
+def test_of_many_settings_that_differ_the_first_are_named(try_out, tmp_path, capsys):
+    for population in (40, 80):
+        others = {f"planner.own_{name}": population for name in "abcdefg"}
+        try_out(tmp_path, {"planner.population": population, **others}, n=12)
+    compare(tmp_path, "--by", "planner.population", "--measure", "success")
+    text = capsys.readouterr().out
+    assert "differ in planner.own_a, planner.own_b" in text
+    assert "planner.own_e and 2 more, too." in text
+
+
 def test_groups_without_a_common_seed_are_compared_unpaired(try_out, tmp_path, capsys):
     for seed, population in ((1, 40), (2, 160)):
         try_out(tmp_path, {"planner.population": population}, seed=seed)
