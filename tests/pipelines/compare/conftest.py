@@ -1,4 +1,5 @@
 import hashlib
+import warnings
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -6,10 +7,19 @@ from typing import Any
 import numpy as np
 import pytest
 
+from gapath.pipelines.report.cli import main
 from gapath.running.naming import Method
 
 from ..conftest import DATE, manifest_of, write_run
 from ..synthetic import NOTHING, make_map, make_trials, plan_settings
+
+
+def compare(outputs: Path, *arguments: str, into: Path | None = None) -> None:
+    """Run the command; warnings are errors."""
+    where = ["-o", str(into)] if into else []
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert main(["compare", str(outputs), *arguments, *where]) == 0
 
 
 @pytest.fixture(scope="session")
