@@ -202,9 +202,8 @@ def test_a_filter_leaves_the_rows_that_match(opened):
     field.fill('"map 2" "ga 3"')
     assert all("Map 2" in text and "GA 3" in text for text in rows.all_inner_texts())
     assert 0 < rows.count() < whole
-    assert (
-        page.locator(f"{METRICS} [role=status]").inner_text() == f"{rows.count()} of {whole} rows"
-    )
+    said = page.locator(f"{METRICS} [role=status]").inner_text()
+    assert said == f"{rows.count()} of {whole} rows"
     field.fill("href")  # what is not seen is not looked for
     assert rows.all_inner_texts() == ["No row matches."]
     field.fill("")
@@ -305,9 +304,8 @@ def test_a_row_leads_to_the_page_of_its_run_and_that_to_its_files(opened, report
     assert {"run.mcap", "config.yaml", "trials.parquet"} <= set(names)
     commands = page.locator("pre").all_inner_texts()
     assert commands[0] == "gapath experiment=table1"
-    assert re.fullmatch(
-        r"gapath-log view (\S+/run\.mcap)\ngapath-log verify \1", commands[1].strip()
-    )
+    of_log = r"gapath-log view (\S+/run\.mcap)\ngapath-log verify \1"
+    assert re.fullmatch(of_log, commands[1].strip())
     assert page.locator(".still polyline:not(.least)").count() >= 4  # three epochs, some paths
     assert page.locator("#trials tbody tr").count() == 12
     column = column_of(page, "plan_time_s", "#trials")
@@ -330,15 +328,14 @@ def test_a_row_of_several_runs_leads_to_their_list(opened, report):
 
 def test_numbers_of_trials_are_whole_or_without_end_as_they_were(opened, tmp_path, make_run):
     run = make_run(tmp_path, "mine", "kg18_test2", "ga3", n=4, log=False)
-    rows = pd.read_parquet(run / "trials.parquet")
     costs, counts = [math.inf, 9.0, 1234567.25, 12.0], [390385, 7, 100001, 2**53 + 1]
-    rows.assign(cost=costs, evaluations=counts).to_parquet(run / "trials.parquet")
+    rows = pd.read_parquet(run / "trials.parquet").assign(cost=costs, evaluations=counts)
+    rows.to_parquet(run / "trials.parquet")
     summed(run)
-    files, _ = make_report(tmp_path, tmp_path / "report")
-    page = opened(path=files[-1].parent / "runs" / f"{run.name}.html")
-    column = column_of(page, "evaluations", "#trials")
-    assert texts(page, column, "#trials") == [str(count) for count in counts]
-    column = column_of(page, "cost", "#trials")
+    make_report(tmp_path, tmp_path / "report")
+    page = opened(path=tmp_path / "report" / "runs" / f"{run.name}.html")
+    column, counted = (column_of(page, name, "#trials") for name in ("cost", "evaluations"))
+    assert texts(page, counted, "#trials") == [str(count) for count in counts]
     sort(page, column, "ascending", "#trials")
     assert texts(page, column, "#trials") == ["9", "12", "1234600", "\N{INFINITY}"]
 
