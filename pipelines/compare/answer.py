@@ -19,9 +19,9 @@ from gapath.pipelines.compare.tables import (
     whole_table,
 )
 from gapath.pipelines.compare.words import WORDINGS, sentences, some
-from gapath.pipelines.numbers.comparable import comparable
-from gapath.pipelines.numbers.comparison import QUANTITIES, Comparison, compare
-from gapath.pipelines.numbers.groups import Groups, overlap, side_by_side
+from gapath.pipelines.numbers.comparing.comparable import comparable
+from gapath.pipelines.numbers.comparing.comparison import QUANTITIES, Comparison, compare
+from gapath.pipelines.numbers.comparing.groups import Groups, overlap, side_by_side
 from gapath.pipelines.numbers.text import number, span
 from gapath.pipelines.page.page import files_of
 from gapath.pipelines.page.section import Section, Table
@@ -142,7 +142,7 @@ def answer(
     outputs, by, wheres
         As `choose` has them.
     quantities : sequence of str
-        Of `gapath.pipelines.numbers.comparison.QUANTITIES`.
+        Of `gapath.pipelines.numbers.comparing.comparison.QUANTITIES`.
 
     Returns
     -------

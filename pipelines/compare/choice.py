@@ -47,7 +47,7 @@ class Choice:
     versions : tuple of str
         The versions of gapath that made the runs.
     said : tuple of str
-        What `gapath.pipelines.numbers.comparable.comparable` left out, in words.
+        What `gapath.pipelines.numbers.comparing.comparable.comparable` left out, in words.
     """
 
     task: type[Task]

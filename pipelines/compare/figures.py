@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Canvas
 
 from gapath.pipelines.compare.words import WORDINGS
-from gapath.pipelines.numbers.comparison import Comparison, Estimate, Pair
-from gapath.pipelines.numbers.pairwise import LEVEL
+from gapath.pipelines.numbers.comparing.comparison import Comparison, Estimate, Pair
+from gapath.pipelines.numbers.comparing.pairwise import LEVEL
 from gapath.pipelines.page.figures import WIDTH, render, style
 from gapath.pipelines.page.section import Figure
 

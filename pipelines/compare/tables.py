@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import pandas as pd
 
 from gapath.pipelines.compare.words import WORDINGS, effect_span, points, probability
-from gapath.pipelines.numbers.comparison import Comparison, Estimate, Pair, estimates
-from gapath.pipelines.numbers.groups import side_by_side
+from gapath.pipelines.numbers.comparing.comparison import Comparison, Estimate, Pair, estimates
+from gapath.pipelines.numbers.comparing.groups import side_by_side
 from gapath.pipelines.numbers.text import NOTHING, number
 from gapath.pipelines.page.section import Table
 from gapath.pipelines.papers.names import label

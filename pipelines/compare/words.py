@@ -3,9 +3,9 @@
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from gapath.pipelines.numbers.comparison import Comparison, Estimate, Pair
-from gapath.pipelines.numbers.omnibus import Omnibus
-from gapath.pipelines.numbers.pairwise import LEVEL
+from gapath.pipelines.numbers.comparing.comparison import Comparison, Estimate, Pair
+from gapath.pipelines.numbers.comparing.omnibus import Omnibus
+from gapath.pipelines.numbers.comparing.pairwise import LEVEL
 from gapath.pipelines.numbers.text import number, percent, percent_range, span
 
 _FEW = 5

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from gapath.pipelines.numbers.comparison import Comparison, Pair, compare
-from gapath.pipelines.numbers.groups import side_by_side
+from gapath.pipelines.numbers.comparing.comparison import Comparison, Pair, compare
+from gapath.pipelines.numbers.comparing.groups import side_by_side
 from gapath.pipelines.numbers.text import NOTHING, number
 from gapath.pipelines.page.section import Table
 from gapath.pipelines.sweeps.cells import wilson_of

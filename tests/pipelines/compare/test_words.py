@@ -3,8 +3,8 @@
 import pytest
 
 from gapath.pipelines.compare.words import sentences, some
-from gapath.pipelines.numbers.comparison import Comparison, Estimate, Pair
-from gapath.pipelines.numbers.pairwise import Difference
+from gapath.pipelines.numbers.comparing.comparison import Comparison, Estimate, Pair
+from gapath.pipelines.numbers.comparing.pairwise import Difference
 
 
 def said(quantity, estimates, *pairs):

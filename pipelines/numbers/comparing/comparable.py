@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import pandas as pd
 
-from gapath.pipelines.numbers.groups import PROBLEM
+from gapath.pipelines.numbers.comparing.groups import PROBLEM
 from gapath.pipelines.numbers.text import number
 
 _FEW = 0.05

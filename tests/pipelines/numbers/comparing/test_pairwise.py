@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from gapath.pipelines.numbers.pairwise import (
+from gapath.pipelines.numbers.comparing.pairwise import (
     holm,
     more_often,
     paired_amounts,

@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from gapath.pipelines.numbers.comparison import QUANTITIES, compare
-from gapath.pipelines.numbers.expected import expected
-from gapath.pipelines.numbers.groups import Groups, side_by_side
+from gapath.pipelines.numbers.comparing.comparison import QUANTITIES, compare
+from gapath.pipelines.numbers.comparing.expected import expected
+from gapath.pipelines.numbers.comparing.groups import Groups, side_by_side
 from gapath.pipelines.numbers.statistics import expected_running_time
 
 DEMSAR = """

@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gapath.pipelines.numbers.expected import Expected, expected
-from gapath.pipelines.numbers.groups import Groups, Overlap, Table, overlap
-from gapath.pipelines.numbers.omnibus import Omnibus, blocks_differ, samples_differ
-from gapath.pipelines.numbers.pairwise import (
+from gapath.pipelines.numbers.comparing.expected import Expected, expected
+from gapath.pipelines.numbers.comparing.groups import Groups, Overlap, Table, overlap
+from gapath.pipelines.numbers.comparing.omnibus import Omnibus, blocks_differ, samples_differ
+from gapath.pipelines.numbers.comparing.pairwise import (
     LEVEL,
     Difference,
     holm,
@@ -63,8 +63,9 @@ class Pair(NamedTuple):
     """Two groups held against each other.
 
     `first` and `second` are their names, `pairs` how many pairs of trials were compared, 0 where
-    all trials of both were, unpaired; `difference` is of `gapath.pipelines.numbers.pairwise`,
-    `adjusted` its p-value after Holm; `apart` tells whether the two can be told apart.
+    all trials of both were, unpaired; `difference` is of
+    `gapath.pipelines.numbers.comparing.pairwise`, `adjusted` its p-value after Holm; `apart`
+    tells whether the two can be told apart.
     """
 
     first: str

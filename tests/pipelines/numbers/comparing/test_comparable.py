@@ -4,9 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from gapath.pipelines.numbers.comparable import comparable
-from gapath.pipelines.numbers.comparison import compare
-from gapath.pipelines.numbers.groups import side_by_side
+from gapath.pipelines.numbers.comparing.comparable import comparable
+from gapath.pipelines.numbers.comparing.comparison import compare
+from gapath.pipelines.numbers.comparing.groups import side_by_side
 
 
 def trials_of(*runs):

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.pipelines.numbers.groups import Table
+from gapath.pipelines.numbers.comparing.groups import Table
 
 
 class Omnibus(NamedTuple):

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.pipelines.numbers.groups import Table
-from gapath.pipelines.numbers.pairwise import Difference
+from gapath.pipelines.numbers.comparing.groups import Table
+from gapath.pipelines.numbers.comparing.pairwise import Difference
 from gapath.pipelines.numbers.statistics import expected_running_time
 
 FEWEST = 10

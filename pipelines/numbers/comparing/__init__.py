@@ -1,0 +1,1 @@
+"""Whether groups of trials differ, and by how much."""
