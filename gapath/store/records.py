@@ -241,7 +241,10 @@ def find_runs(outputs: Path) -> list[RunRecord]:
         runs = [run for run in map(read_record, folders) if run.manifest or is_run(run.folder)]
     except OSError as error:
         raise InputError(error.filename or outputs, error.strerror, "readable folders") from error
-    require(bool(runs), outputs, "no runs", "run folders <experiment>/<key>/; `gapath` makes them")
+    right = "run folders <experiment>/<key>/; `gapath` makes them"
+    if not runs and any(map(is_run, _folders(outputs))):
+        right = f"the folder above, {outputs.resolve().parent}: these are runs of one experiment"
+    require(bool(runs), outputs, "no runs", right)
     return runs
 
 

@@ -68,6 +68,12 @@ def main(arguments: Sequence[str]) -> None:
     runs = find_runs(given.outputs)
     frame, came = described(runs)
     places = _places(given, frame)
+    if not places:
+        print("no such runs", file=sys.stderr)
+    if not places and given.sql is not None:  # no trials, so nobody knows what columns they have
+        if given.json or given.csv:
+            _write(given, Answer([], []))
+        return
     if given.sql is not None:
         places = _counting(frame, runs, places)
         answer, bad = asked(given.sql, frame.iloc[places], [runs[place] for place in places])
@@ -98,8 +104,6 @@ def _places(given: argparse.Namespace, frame: pd.DataFrame) -> list[int]:
     if given.last is not None:
         require(given.last > 0, "--last", given.last, "how many runs")
         places = places[-given.last :]
-    if not places:
-        print("no such runs", file=sys.stderr)
     return places
 
 

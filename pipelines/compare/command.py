@@ -35,8 +35,9 @@ def parser() -> argparse.ArgumentParser:
     )
     made.add_argument("outputs", type=Path, nargs="?", default=Path("outputs"), help="folder "
                       "with <experiment>/<key>/ [outputs]")  # fmt: skip
-    made.add_argument("--by", metavar="NAME", help="what tells the groups apart: a setting as "
-                      "planner.population, or method, preset, experiment")  # fmt: skip
+    made.add_argument("--by", action="append", default=[], metavar="NAME", help="what tells the "
+                      "groups apart: a setting as planner.population, or method, preset, "
+                      "experiment")  # fmt: skip
     made.add_argument("--where", action="append", default=[], metavar="SQL", help="with --by: "
                       "only runs that fulfil it; without: a group, so two or more")  # fmt: skip
     made.add_argument("--measure", default="all", metavar="LIST", help="of success, evaluations, "
@@ -61,17 +62,18 @@ def run(arguments: Sequence[str]) -> None:
         If the arguments are wrong, the runs make no two groups, or nothing can be written.
     """
     given = parser().parse_args(list(arguments))
+    require(len(given.by) <= 1, "--by", ", ".join(given.by), "one name")
+    by = given.by[0] if given.by else None
     measures = list(MEASURES) if given.measure == "all" else given.measure.split(",")
     for measure in measures:
         require(measure in MEASURES, "--measure", measure, one_of(measure, MEASURES))
     quantities = [each for measure in measures for each in MEASURES[measure]]
-    folder = given.output or given.outputs / "compare" / _name(given.by, given.where)
+    folder = given.output or given.outputs / "compare" / _name(by, given.where)
     # SciPy, pandas and matplotlib take a second to start
     from gapath.pipelines.compare.answer import Answer, answer
 
-    found: Answer = answer(given.outputs, given.by, given.where, quantities)
-    for name, reason in found.choice.left_out:
-        print(f"left out {name}: {reason}", file=sys.stderr)
+    found: Answer = answer(given.outputs, by, given.where, quantities)
+    _name_left_out(found.choice.left_out)
     print(json.dumps(found.plain(), indent=1) if given.json else found.text(_ROWS), flush=True)
     files = dict(found.files())
     try:
@@ -80,6 +82,16 @@ def run(arguments: Sequence[str]) -> None:
         raise InputError(folder, error.strerror, "a folder that can be written") from error
     if not given.json:
         print(f"{len(files)} files in {folder}; read {folder / PAGE}")
+
+
+def _name_left_out(runs: Sequence[tuple[str, str]]) -> None:
+    """Name the runs that were left out; many with one reason in one line."""
+    by_reason: dict[str, list[str]] = {}
+    for name, reason in runs:
+        by_reason.setdefault(reason, []).append(name)
+    for reason, names in by_reason.items():
+        more = f" and {len(names) - 1} more" if len(names) > 1 else ""
+        print(f"left out {names[0]}{more}: {reason}", file=sys.stderr)
 
 
 def _write(folder: Path, files: Mapping[str, bytes]) -> None:

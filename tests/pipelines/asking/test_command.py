@@ -181,9 +181,14 @@ def test_no_folder_and_no_runs_are_one_line(ask, tmp_path):
     assert ask(folder=tmp_path / "none")[0] == ask(folder=tmp_path)[0] == 2
 
 
+def test_runs_of_one_experiment_lie_below_another_folder(ask, outputs):
+    code, _, said = ask(folder=outputs / "sizes")
+    assert code == 2 and f"expected the folder above, {outputs.resolve()}: " in said
+
+
 def test_no_run_fulfils_it(ask):
     assert ask("--where", "map = 'elsewhere'")[::2] == (0, "no such runs\n")
-    for words in (["--group", "map"], ["--sql", "select count(*) as n from trials"]):
+    for words in (["--group", "map"], ["--sql", "select map from trials"]):
         for form in ([], ["--csv"], ["--json"]):
             code, out, said = ask("--where", "map = 'elsewhere'", *words, *form)
             assert (code, said) == (0, "no such runs\n") and len(out.splitlines()) <= 5

@@ -230,6 +230,7 @@ def test_statistics_that_cannot_be_had_say_why(try_out, tmp_path, capsys, column
         (["--where", "seed = 0", "--where", "seed = 3"], "a condition that a run fulfils"),
         (["--where", "seed = 0", "--where", "map = 'kg18_test1'"], "in two groups"),
         (["--by", "map", "--measure", "sucess"], "did you mean success?"),
+        (["--by", "map", "--by", "seed"], "--by: got map, seed, expected one name"),
     ],
 )
 def test_bad_questions_have_one_line_and_write_nothing(sweep, tmp_path, capsys, arguments, said):
