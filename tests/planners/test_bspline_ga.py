@@ -47,7 +47,7 @@ def same_as_twin(problem, ga, seed, trial):
         assert flaw(problem, plan.path) is None
 
 
-@settings(max_examples=300)
+@settings(max_examples=120)
 @given(problems(), planners(), st.integers(0, 2**64 - 1), st.integers(0, 10**6))
 def test_evolution_equals_the_naive_twin(problem, ga, seed, trial):
     same_as_twin(problem, ga, seed, trial)

@@ -103,7 +103,7 @@ def test_stages_are_those_of_the_paper():
         assert min(stages.seconds.values()) >= 0
 
 
-@settings(max_examples=150)
+@settings(max_examples=80)
 @given(
     picture_problems(most=24),
     st.integers(0, 4),
