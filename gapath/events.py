@@ -14,7 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.grid import Field
-from gapath.problem import Answer, Evolution, Graph, Problem
+from gapath.history.evolution import Evolution
+from gapath.history.graph import Graph
+from gapath.problem import Answer, Problem
 
 Settings: TypeAlias = Mapping[str, str | int | float | bool | None]
 """A run's settings, flat: "planner.population", "drive.sensor.range" -> value."""

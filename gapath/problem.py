@@ -5,13 +5,15 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
 from enum import IntEnum
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
+from typing import TYPE_CHECKING, Any, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import InputError, one_of
 from gapath.grid import Field, GridMap, PlanningMap, nearest_free, other_reading
+from gapath.history.evolution import Evolution
+from gapath.history.graph import Graph
 from gapath.kernels import units
 from gapath.pictures.shown import Shown, axes_for
 
@@ -131,45 +133,6 @@ def _pair(place: Any) -> Field | None:
         return pair if pair == (float(x), float(y)) else None
     except (TypeError, ValueError, OverflowError):
         return None
-
-
-class Evolution(NamedTuple):
-    """What a genetic algorithm did, epoch by epoch (E epochs).
-
-    A best path is given by its way points, which straight lines join
-    (`gapath.kernels.raster.polyline`); rows are padded with the last way point.
-    """
-
-    best: NDArray[np.float64]
-    """(E,) fitness of the best individual: its cost, KG18 eq. (5), obstacles counted as VLN; for
-    the genotype "keypoints" the length of its lines in fields, M22 eq. (7)."""
-    mean: NDArray[np.float64]
-    """(E,) mean fitness of the population."""
-    chromosomes: NDArray[np.int32]
-    """(E, genes) the best individual."""
-    way_points: NDArray[np.int32]
-    """(E, n, 2) the best individual's way points as (x, y)."""
-    genotype: str
-    """What the genes mean, e.g. "control_points": x1, y1, ..., xk, yk; "keypoints": numbers of a
-    graph's points."""
-
-
-class Graph(NamedTuple):
-    """What a planner made of the map before it searched: points, and free lines between them."""
-
-    obstacles: NDArray[np.bool_]
-    """Obstacles as the planner took them, grown by the robot's radius, (rows, cols) of blocks."""
-    block: int
-    """Fields of the map, along a side, that are one block."""
-    points: NDArray[np.int32]
-    """(n, 2) fields (x, y) of the map: the start, the target, the keypoints."""
-    edges: NDArray[np.int32]
-    """(m, 2) numbers of the points that a free line joins, the smaller one first."""
-
-    def grown(self, rows: int, cols: int) -> NDArray[np.bool_]:
-        """Give the obstacles in the size of the map, (rows, cols)."""
-        blocks = np.kron(self.obstacles, np.ones((self.block, self.block), dtype=np.bool_))
-        return np.asarray(blocks[:rows, :cols])
 
 
 def no_path() -> NDArray[np.int32]:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import Checks, require, require_memory
+from gapath.history.evolution import Evolution
 from gapath.kernels.history import History, fitness_history
 from gapath.kernels.kg18.bspline import Basis, basis, rasterise, way_points
 from gapath.kernels.kg18.evolution import (
@@ -28,7 +29,7 @@ from gapath.kernels.kg18.evolution import (
 from gapath.kernels.lines import KEY_BITS, ONE_OBSTACLE
 from gapath.kernels.rng import Stream, probability_threshold
 from gapath.kernels.units import SCALE
-from gapath.problem import Evolution, Plan, PlanStatus, Query, no_path
+from gapath.problem import Plan, PlanStatus, Query, no_path
 
 Arguments: TypeAlias = tuple[
     NDArray[np.int32],

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import Checks, require, require_memory
+from gapath.history.evolution import Evolution
 from gapath.kernels.history import History, fitness_history
 from gapath.kernels.lines import KEY_BITS, ONE_OBSTACLE
 from gapath.kernels.raster import polyline
@@ -19,7 +20,7 @@ from gapath.kernels.rng import Stream, probability_threshold
 from gapath.kernels.s04.evolution import SETTINGS, run_evolution
 from gapath.kernels.s04.genotype import MAX_SIDE
 from gapath.kernels.units import SCALE
-from gapath.problem import Evolution, Plan, PlanStatus, Query, no_path
+from gapath.problem import Plan, PlanStatus, Query, no_path
 from gapath.survey.row_column import SquareView
 
 

@@ -12,13 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import Checks, InputError, require_memory
+from gapath.history.evolution import Evolution
 from gapath.kernels.history import History
 from gapath.kernels.m22.evolution import SETTINGS, path_length, run_evolution
 from gapath.kernels.m22.graph import END, START
 from gapath.kernels.rng import Stream, probability_threshold
 from gapath.kernels.units import SCALE
 from gapath.planning.stages import Stages
-from gapath.problem import Evolution, Plan, PlanStatus, Query
+from gapath.problem import Plan, PlanStatus, Query
 from gapath.survey.visibility_graph import Surveyor, VisibilityGraph
 
 PROFILES = ("v64", "v67", "v69")

@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import Checks, require
+from gapath.history.graph import Graph
 from gapath.kernels.m22.graph import END, START, graph_lengths, line_is_free, shortest
 from gapath.kernels.raster import polyline
 from gapath.kernels.units import OBSTACLE, SCALE
 from gapath.planning.stages import Stages
-from gapath.problem import CornerCutting, Graph, Plan, PlanStatus, Query, no_path
+from gapath.problem import CornerCutting, Plan, PlanStatus, Query, no_path
 from gapath.survey.keypoints import Points, Vector, ahead, axis_ends, corners, label, place
 from gapath.survey.obstacle_image import Clearance, Picture, dilate
 from gapath.survey.resizing import coarsest_scale, growth_at, shrunk

@@ -5,13 +5,13 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
+from gapath.history.graph import Graph
 from gapath.pictures.board import LINE, draw_lines, draw_picture
 from gapath.pipelines.m22.logs import First, read_first
 from gapath.pipelines.page.figures import panels, render, style
 from gapath.pipelines.page.section import Figure, Section
 from gapath.pipelines.papers.names import label, rank
 from gapath.pipelines.reading.logs import read_logs
-from gapath.problem import Graph
 from gapath.store.records import RunRecord
 
 TASK = "plan"

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.events import Evolved, RunStarted, Surveyed, TrialFinished
+from gapath.history.graph import Graph
 from gapath.pipelines.reading.logs import events_of, run_start
 from gapath.planning.path import without_stands
-from gapath.problem import Graph
 from gapath.store.records import RunRecord
 
 

@@ -24,7 +24,8 @@ from gapath.events import (
     TrialStarted,
 )
 from gapath.grid import GridMap
-from gapath.problem import Answer, Evolution, PlanStatus, Problem
+from gapath.history.evolution import Evolution
+from gapath.problem import Answer, PlanStatus, Problem
 from gapath.recorders import mcap
 
 

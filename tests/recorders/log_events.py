@@ -22,7 +22,9 @@ from gapath.events import (
     TrialStarted,
 )
 from gapath.grid import GridMap
-from gapath.problem import Answer, Evolution, Graph, Plan, PlanStatus, Problem
+from gapath.history.evolution import Evolution
+from gapath.history.graph import Graph
+from gapath.problem import Answer, Plan, PlanStatus, Problem
 from gapath.recorders import mcap
 
 

@@ -28,7 +28,9 @@ from gapath.events import (
     TrialStarted,
 )
 from gapath.grid import GridMap
-from gapath.problem import Answer, CornerCutting, Evolution, Graph, PlanStatus, Problem
+from gapath.history.evolution import Evolution
+from gapath.history.graph import Graph
+from gapath.problem import Answer, CornerCutting, PlanStatus, Problem
 from gapath.recorders import mcap, none
 from gapath.recorders.mcap import cdr
 from gapath.recorders.mcap import format as log_format

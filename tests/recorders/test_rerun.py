@@ -21,7 +21,8 @@ import gapath
 from gapath.errors import InputError
 from gapath.events import Evolved, RunFinished, RunStarted, TrialFinished, TrialStarted
 from gapath.grid import GridMap
-from gapath.problem import Answer, Evolution, PlanStatus, Problem
+from gapath.history.evolution import Evolution
+from gapath.problem import Answer, PlanStatus, Problem
 from gapath.recorders.rerun import Recorder
 
 CONF = Path(gapath.__file__).parent.parent / "conf" / "recorder" / "rerun.yaml"

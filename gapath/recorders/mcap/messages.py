@@ -22,7 +22,8 @@ from gapath.events import (
     TrialStarted,
 )
 from gapath.grid import GridMap
-from gapath.problem import Evolution, Graph
+from gapath.history.evolution import Evolution
+from gapath.history.graph import Graph
 from gapath.recorders.mcap import drive_messages
 from gapath.recorders.mcap.cdr import (
     ENCAPSULATION,

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from gapath.events import Event, Evolved, RunStarted, Surveyed, TrialFinished, TrialStarted
 from gapath.grid import GridMap
+from gapath.history.graph import Graph
 from gapath.kernels.raster import polyline
-from gapath.problem import Graph
 from gapath.recorders.rerun.drawing import (
     GREEN,
     GREY,

@@ -1,0 +1,1 @@
+"""What a planner tells of how it came to its answer."""
