@@ -127,7 +127,7 @@ def _run_started(run: RunStarted) -> Iterator[Record]:
 
 
 def _ga_run(event: Evolved) -> Record:
-    best, mean, chromosomes, way_points, genotype = event.evolution
+    best, mean, chromosomes, way_points, genotype, _ = event.evolution
     head = _GA_RUN.pack(event.trial, event.call, chromosomes.shape[1], way_points.shape[1])
     rows = (
         np.asarray(chromosomes, _INT32),
