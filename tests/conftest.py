@@ -10,6 +10,7 @@ from hypothesis import settings
 TESTS = Path(__file__).parent
 # twins and strategies; the benchmarks, which are not installed
 sys.path[:0] = map(str, (TESTS, TESTS / "twins", TESTS.parent))
+sys.path.append(str(TESTS / "plugin"))  # not before that package where it is installed
 
 settings.register_profile("gapath", deadline=None, derandomize=True, max_examples=100)
 settings.register_profile("many", deadline=None, max_examples=2000)

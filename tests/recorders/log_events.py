@@ -6,6 +6,7 @@ import struct
 from pathlib import Path
 
 import numpy as np
+from gapath_example import bender
 
 from gapath.driving.drive import Driven, Leg, Sensor
 from gapath.driving.known_map import Looks
@@ -24,8 +25,11 @@ from gapath.events import (
 from gapath.grid import GridMap
 from gapath.history.evolution import Evolution
 from gapath.history.graph import Graph
+from gapath.planning.shortest_path import shortest_path
+from gapath.planning.simulation import plan_trials
 from gapath.problem import Answer, Plan, PlanStatus, Problem
 from gapath.recorders import mcap
+from gapath.tasks.plan import duration, trial_events
 
 
 def plain(value):
@@ -100,6 +104,20 @@ def example_drives(trials=2):
         step += len(driven.frames)
     events.append(RunFinished(step, trials, 1))
     return events
+
+
+def example_memetic(trials=3):
+    """Give the events of a run whose genetic algorithm tells what its population took in.
+
+    The map is that of `example`, its row 3 blocked but for both ends.
+    """
+    planner = bender.Planner(individuals=3, epochs=12, tries=40)
+    run = dataclasses.replace(example(trials)[0], experiment="plan", method="bender")
+    problem, events, step = run.problem, [run], 0
+    for answer in plan_trials(problem, shortest_path(problem), planner, 7, trials):
+        events += trial_events(answer, 7, step)
+        step += duration(answer.plan)
+    return [*events, RunFinished(step, trials, trials)]
 
 
 SETTINGS = {"task": "drive", "navigator.kind": "kg18"}  # readers take what they need from events

@@ -28,7 +28,7 @@ from gapath.events import (
     TrialStarted,
 )
 from gapath.grid import GridMap
-from gapath.history.evolution import Evolution
+from gapath.history.evolution import Evolution, Population
 from gapath.history.graph import Graph
 from gapath.problem import Answer, CornerCutting, PlanStatus, Problem
 from gapath.recorders import mcap, none
@@ -66,7 +66,37 @@ def paths(least=0):
 
 
 @st.composite
+def with_populations(draw):
+    """Any evolution with a population: every best individual is one of its polygons."""
+    some = st.lists(paths(least=1), min_size=1, max_size=6)
+    polygons, names = draw(some), draw(st.lists(st.text(), min_size=1, max_size=3))
+    m = len(polygons)
+    first = draw(st.lists(st.integers(1, 3), min_size=m, max_size=m).map(sorted))
+    population = Population(
+        epochs=np.array(first, dtype=np.int32),
+        individuals=draw(arrays(np.int32, m, elements=int32)),
+        operators=draw(arrays(np.int32, m, elements=st.integers(0, len(names) - 1))),
+        gains=draw(arrays(np.float64, m)),
+        costs=draw(arrays(np.float64, m)),
+        ends=np.cumsum(list(map(len, polygons)), dtype=np.int32),
+        vertices=np.concatenate(polygons),
+        names=tuple(names),
+        shares=tuple(draw(st.floats()) for _ in names),
+    )
+    width = max(map(len, polygons)) + draw(st.integers(0, 2))
+    numbers = range(first[0] - 1, draw(st.integers(0, 4)))
+    best = [draw(st.sampled_from(polygons[: first.count(1)])) for _ in numbers if first[0] == 1]
+    rows = [np.concatenate([each, each[-1:].repeat(width - len(each), 0)]) for each in best]
+    way_points = np.array(rows, dtype=np.int32).reshape(len(best), width, 2)
+    values = (draw(arrays(np.float64, len(best))) for _ in range(2))
+    genes = way_points.reshape(len(best), 2 * width)
+    return Evolution(*values, genes, way_points, draw(st.text()), population)
+
+
+@st.composite
 def evolutions(draw):
+    if draw(st.booleans()):
+        return draw(with_populations())
     epochs = draw(st.integers(0, 4))
     genes, count = draw(st.integers(0, 5)), draw(st.integers(0, 3))
     return Evolution(

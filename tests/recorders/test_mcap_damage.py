@@ -159,10 +159,10 @@ BAD = {
     "no metadata": (lambda path, log: foreign(path), "a run's description"),
     "version": (
         lambda path, log: foreign(path, metadata={"gapath_log_version": "99"}),
-        "gapath_log_version: got 99, expected 4",
+        "gapath_log_version: got 99, expected 4 or 5",
     ),
     "entries missing": (
-        lambda path, log: foreign(path, metadata={"gapath_log_version": "4"}),
+        lambda path, log: foreign(path, metadata={"gapath_log_version": "5"}),
         "KeyError",
     ),
 }

@@ -22,7 +22,9 @@ ENCAPSULATION = b"\0\1\0\0"
 INFO, WARN = 20, 30
 """Levels of rcl_interfaces/msg/Log."""
 
-_COUNT = struct.Struct("<I")
+COUNT = struct.Struct("<I")
+"""How many parts a sequence has."""
+
 _STAMP = struct.Struct("<iI")
 
 
@@ -46,7 +48,7 @@ def arrays_cdr(head: bytes, *arrays: NDArray[Any]) -> bytes:
     parts, position = [ENCAPSULATION, head], len(head)
     for array in arrays:
         padding = bytes(-(position + 4) % array.itemsize if array.size else 0)
-        parts += _COUNT.pack(array.size), padding, array.tobytes()
+        parts += COUNT.pack(array.size), padding, array.tobytes()
         position += 4 + len(padding) + array.nbytes
     return b"".join(parts)
 
@@ -57,7 +59,7 @@ def strings_cdr(*texts: str) -> bytes:
     data = b""
     for text in texts:
         encoded = text.encode() + b"\0"
-        data += bytes(-len(data) % 4) + _COUNT.pack(len(encoded)) + encoded
+        data += bytes(-len(data) % 4) + COUNT.pack(len(encoded)) + encoded
     return data
 
 
@@ -132,7 +134,7 @@ def _header_cdr(step: int) -> bytes:
     return _STAMP.pack(second, nanosecond) + _FRAME_CDR
 
 
-_FRAME_CDR = _COUNT.pack(len(FRAME) + 1) + FRAME.encode() + b"\0"
+_FRAME_CDR = COUNT.pack(len(FRAME) + 1) + FRAME.encode() + b"\0"
 
 
 def _stamp(step: int) -> Any:
@@ -210,7 +212,7 @@ def path_cdr(step: int, metres: NDArray[np.float64]) -> bytes:
         Little-endian CDR.
     """
     header = _header_cdr(step)
-    start = ENCAPSULATION + header + _COUNT.pack(len(metres))
+    start = ENCAPSULATION + header + COUNT.pack(len(metres))
     if not len(metres):
         return start
     # Doubles are aligned to 8 bytes. That puts 4 bytes before the first pose only, so

@@ -18,8 +18,10 @@ from gapath.grid import Field, GridMap
 from gapath.problem import CornerCutting, Problem
 from gapath.store.settings import of_text, text_of
 
-LOG_VERSION = "4"
+LOG_VERSION = "5"
 """Raised whenever an older reader would misread a log."""
+
+_READ = ("4", LOG_VERSION)  # a log of version 4 has no population, and is else the same
 
 NAME = "gapath"
 """Name of the metadata record."""
@@ -114,7 +116,7 @@ def run_started(text: Mapping[str, str], files: Mapping[str, bytes]) -> RunStart
         If an entry is missing or is no number: whatever Python or NumPy raise.
     """
     version = text.get("gapath_log_version")
-    require(version == LOG_VERSION, "gapath_log_version", version, LOG_VERSION)
+    require(version in _READ, "gapath_log_version", version, " or ".join(_READ))
     written = dict(text)
     digest = written.pop("sha256")
     require(_digest(written, files) == digest, "sha256", digest, "the digest of what is there")

@@ -43,6 +43,28 @@ float64[] best            # fitness of the best individual
 float64[] mean            # mean fitness of the population
 string genotype           # what the genes mean
 """,
+    "gapath_msgs/msg/MemeticRun": """\
+# A genetic algorithm ran and tells what its population took in, a change at a time; a polygon is
+# written as what changed of the same individual's one before.
+uint64 trial
+uint64 call               # number of this run within its trial
+uint32 way_points_count   # vertices in each epoch's best polygon, its last one repeated
+int32[] leaders           # an epoch each: number of the change that left the best individual
+int32[] epochs            # a change each, as are the next five: from 1, not falling
+int32[] individuals       # which one it changed
+int32[] operators         # what did it, a number of names
+int32[] heads             # vertices of the polygon before with which this one begins
+int32[] tails             # vertices of the polygon before with which it ends
+int32[] ends              # where its other vertices end in vertices, in between
+int32[] vertices          # x, y, x, y, ... [fields]
+float64[] best            # an epoch each: fitness of the best individual
+float64[] mean            # mean fitness of the population
+float64[] gains           # a change each: by how much the individual became cheaper
+float64[] costs           # what it costs since
+float64[] shares          # a name each: by how much it lowered the cost of the best so far
+string[] names            # what makes and changes individuals
+string genotype           # what the best individual's genes mean
+""",
     "gapath_msgs/msg/Graph": """\
 # What a planner made of the map before it searched; the same in every trial of a run.
 uint64 trial
@@ -142,6 +164,7 @@ TOPICS = {
     "/run_end": "gapath_msgs/msg/RunEnd",
     "/path": "nav_msgs/msg/Path",
     "/ga_run": "gapath_msgs/msg/GaRun",
+    "/memetic_run": "gapath_msgs/msg/MemeticRun",
     "/graph": "gapath_msgs/msg/Graph",
     "/result": "gapath_msgs/msg/Result",
     "/known_map": "nav_msgs/msg/OccupancyGrid",

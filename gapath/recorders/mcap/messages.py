@@ -43,6 +43,8 @@ from gapath.recorders.mcap.cdr import (
     strings_cdr,
 )
 from gapath.recorders.mcap.format import TOPICS, TYPES
+from gapath.recorders.mcap.memetic_message import TOPIC as MEMETIC_RUN
+from gapath.recorders.mcap.memetic_message import memetic_run, read_memetic_run
 from gapath.store.settings import text_of
 
 # What every trial writes is packed by hand, three times faster than by rosbags.
@@ -87,7 +89,8 @@ class Messages:
                 texts = strings_cdr(self._run.method, self._settings)
                 yield Record("/trial_start", step, ENCAPSULATION + _TRIAL.pack(trial, seed) + texts)
             case Evolved():
-                yield _ga_run(event)
+                population = event.evolution.population
+                yield memetic_run(event, population) if population else _ga_run(event)
             case Surveyed(step, trial, (obstacles, block, points, edges)):
                 picture = np.packbits(obstacles)
                 fields = (picture, points.ravel(), edges.ravel())
@@ -210,6 +213,7 @@ def _read_finished(step: int, m: Any) -> TrialFinished:
 _READERS: dict[str, Callable[[int, Any], Event]] = {
     "/trial_start": lambda step, m: TrialStarted(step, m.trial, m.seed),
     "/ga_run": _read_evolved,
+    MEMETIC_RUN: read_memetic_run,
     "/graph": _read_surveyed,
     "/result": _read_finished,
     "/run_end": lambda step, m: RunFinished(step, m.trials, m.found),
