@@ -18,6 +18,7 @@ from gapath.api import load_map
 from gapath.components import build
 from gapath.discovery import yaml_values
 from gapath.grid import GridMap
+from gapath.mapio.generated import CLASSES as GENERATED
 from gapath.mapio.reconstructed import CLASSES
 from gapath.problem import Problem
 from gapath.recorders import mcap
@@ -110,6 +111,13 @@ def check(ours, experiment, name, update):
         golden[name] = ours
         path.write_text(json.dumps(golden, indent=1, sort_keys=True) + "\n")
     assert ours == golden[name]
+
+
+@pytest.mark.parametrize("map_class", GENERATED)
+def test_generated_maps_are_the_golden_ones(map_class, update_golden):
+    grids = [load_map(map_class, width=170, height=90, instance=i) for i in (0, 7)]
+    ours = [f"{grid.start} {grid.target} {grid.digest}" for grid in grids]
+    check(ours, "generated", map_class, update_golden)
 
 
 @pytest.mark.parametrize(("map_class", "planner"), TABLE1)

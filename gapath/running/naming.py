@@ -107,14 +107,14 @@ def map_name(name: str, settings: Mapping[str, Any]) -> str:
     path = str(settings.get("path") or "")
     title = _title(path) if Path(path).stem == name else name
     given = {key: value for key, value in settings.items() if key not in _SHOWN_APART}
-    changes = _changes(flatten(given), flatten(_usual(settings["kind"])))
+    changes = _changes(flatten(given), flatten(_usual(name, settings["kind"])))
     return with_changes(title, changes.items())
 
 
-def _usual(kind: str) -> dict[str, Any]:
-    """Give the values of a kind's YAML; of drawn maps, which have one each, those of any."""
+def _usual(name: str, kind: str) -> dict[str, Any]:
+    """Give the values of a map's own YAML, else of its kind's, else of any map of that kind."""
     names = yaml_names("map")
-    every = (yaml_values("map", name) for name in ([kind] if kind in names else names))
+    every = (yaml_values("map", n) for n in (name, kind, *names) if n in names)
     return next((values for values in every if values["kind"] == kind), {})
 
 

@@ -39,6 +39,7 @@ def test_maps_that_differ_are_called_otherwise(name, values, expected):
         ("m22_scene03", {"number": 15, "width": 400}, "m22_scene15[width=400]"),
         ("kg18_test3", {"instance": 5}, "kg18_test3"),  # tables have a column for it
         ("s04_sp07", {}, "s04_sp07"),
+        ("field_rooms", {"height": 50, "instance": 2}, "field_rooms[height=50]"),
     ],
 )
 def test_drawn_maps_that_differ_are_called_otherwise(yaml, values, expected):

@@ -213,3 +213,22 @@ def shortest_cost(weights, start, target, rule="allow"):
                         following.append(place)
         frontier = following
     return cost.get(target, float("inf")) / 65536
+
+
+def maze(words, rows, cols):
+    """Open passages of a perfect maze, as pairs of cells (y, x), the upper or left one first."""
+    seen, way, opened, drawn = {(0, 0)}, [(0, 0)], set(), iter(words)
+    while way:
+        y, x = way[-1]
+        beside = [(y, x - 1), (y, x + 1), (y - 1, x), (y + 1, x)]
+        closed = [
+            (v, u) for v, u in beside if 0 <= v < rows and 0 <= u < cols and (v, u) not in seen
+        ]
+        if not closed:
+            way.pop()
+            continue
+        there = closed[high(int(next(drawn)), len(closed))]
+        opened.add((min((y, x), there), max((y, x), there)))
+        seen.add(there)
+        way.append(there)
+    return opened

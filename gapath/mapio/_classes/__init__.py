@@ -1,1 +1,1 @@
-"""Generators of KG18's map classes."""
+"""Generators of KG18's map classes, and what all generators share."""

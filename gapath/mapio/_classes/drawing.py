@@ -1,4 +1,4 @@
-"""What the generators of reconstructed maps share: the frame of a map, and dice."""
+"""What the generators of maps share: the frame of a reconstructed one, and dice."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +27,12 @@ class Draw:
         """Draw an integer, both ends included."""
         fill(self._stream, self._word)
         return lowest + int(high(self._word[0], highest - lowest + 1))
+
+    def words(self, count: int) -> NDArray[np.uint64]:
+        """Draw so many words at once, (count,)."""
+        words = np.empty(count, dtype=np.uint64)
+        fill(self._stream, words)
+        return words
 
     def rectangle(self, widths: Field, heights: Field) -> tuple[int, int]:
         """Draw a width and a height, both ends of either range included."""

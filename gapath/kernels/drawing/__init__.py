@@ -1,0 +1,1 @@
+"""What generated maps are drawn by."""
