@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from gapath.errors import Checks, require, require_memory
 from gapath.history.evolution import Evolution
-from gapath.kernels.history import History, fitness_history
+from gapath.kernels.history.epochs import History, fitness_history
 from gapath.kernels.kg18.bspline import Basis, basis, rasterise, way_points
 from gapath.kernels.kg18.evolution import (
     KERNELS,

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from gapath.errors import Checks, require, require_memory
 from gapath.history.evolution import Evolution
-from gapath.kernels.history import History, fitness_history
+from gapath.kernels.history.epochs import History, fitness_history
 from gapath.kernels.lines import KEY_BITS, ONE_OBSTACLE
 from gapath.kernels.raster import polyline
 from gapath.kernels.rng import Stream, probability_threshold

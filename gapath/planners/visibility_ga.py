@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from gapath.errors import Checks, InputError, require_memory
 from gapath.history.evolution import Evolution
-from gapath.kernels.history import History
+from gapath.kernels.history.epochs import History
 from gapath.kernels.m22.evolution import SETTINGS, path_length, run_evolution
 from gapath.kernels.m22.graph import END, START
 from gapath.kernels.rng import Stream, probability_threshold

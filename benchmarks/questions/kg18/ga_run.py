@@ -30,7 +30,7 @@ from benchmarks.measure import (
     ratios,
 )
 from benchmarks.rivals import textbook
-from gapath.kernels.history import EPOCHS, History
+from gapath.kernels.history.epochs import EPOCHS, History
 from gapath.kernels.kg18 import evolution
 from gapath.kernels.kg18.evolution import Evolve, run_evolutions, usable_kernels
 from gapath.kernels.rng import Stream, stream

@@ -22,7 +22,7 @@ from benchmarks.measure import (
     ratios,
     repeat_fields,
 )
-from gapath.kernels.history import EPOCHS
+from gapath.kernels.history.epochs import EPOCHS
 from gapath.kernels.jit import kernel
 from gapath.kernels.kg18.bspline import basis
 from gapath.kernels.kg18.evaluation import evaluate, workspace

@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.kernels.history import EPOCHS, History
+from gapath.kernels.history.epochs import EPOCHS, History
 from gapath.kernels.jit import JIT, kernel
 from gapath.kernels.kg18.bspline import Basis
 from gapath.kernels.kg18.evaluation import evaluate, workspace

@@ -9,7 +9,7 @@ are genes too, one that does not begin at the start or never reaches the end.
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.kernels.history import History
+from gapath.kernels.history.epochs import History
 from gapath.kernels.jit import kernel
 from gapath.kernels.m22.graph import END, START
 from gapath.kernels.m22.operators import INDEX_BITS, choose_breeders, cross_and_mutate, select

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.kernels.history import EPOCHS, History
+from gapath.kernels.history.epochs import EPOCHS, History
 from gapath.kernels.jit import kernel
 from gapath.kernels.lines import KEY_BITS, ONE_OBSTACLE, Ends
 from gapath.kernels.rng import Stream, fill

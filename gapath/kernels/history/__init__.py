@@ -1,0 +1,1 @@
+"""What kernels keep of a genetic algorithm's course, and what is made of that."""
