@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from gapath.errors import require
 from gapath.events import Evolved
 from gapath.history.evolution import Evolution, Population
-from gapath.kernels.polygon_changes import leaders, restored, shortened, whole_ends
+from gapath.kernels.history.polygon_changes import leaders, restored, shortened, whole_ends
 from gapath.recorders.mcap.cdr import COUNT, Record, arrays_cdr, strings_cdr
 from gapath.recorders.mcap.format import MAX_CHUNK
 

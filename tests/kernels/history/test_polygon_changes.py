@@ -5,7 +5,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gapath.kernels.polygon_changes import leaders, restored, shortened, whole_ends
+from gapath.kernels.history.polygon_changes import leaders, restored, shortened, whole_ends
 
 VERTEX = st.tuples(st.integers(0, 1), st.just(7))  # two of them: polygons often begin alike
 POLYGONS = st.lists(
