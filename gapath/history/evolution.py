@@ -38,6 +38,27 @@ class Population(NamedTuple):
         begin = self.ends[change - 1] if change else 0
         return self.vertices[begin : self.ends[change]]
 
+    def standing(self, epochs: int) -> NDArray[np.int32]:
+        """Say as which change left it each individual (P) is at the end of each epoch.
+
+        Parameters
+        ----------
+        epochs : int
+            How many.
+
+        Returns
+        -------
+        (epochs, P) int32
+            Numbers of changes, individuals in order of their numbers; -1 where there is none yet.
+        """
+        whose = np.unique(self.individuals)
+        found = np.empty((epochs, len(whose)), dtype=np.int32)
+        for k, individual in enumerate(whose):
+            own = np.flatnonzero(self.individuals == individual)
+            until = np.searchsorted(self.epochs[own], np.arange(1, epochs + 1), side="right")
+            found[:, k] = np.concatenate([[-1], own])[until]
+        return found
+
 
 class Evolution(NamedTuple):
     """What a genetic algorithm did, epoch by epoch (E epochs).
