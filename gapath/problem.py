@@ -259,6 +259,8 @@ class Plan(Answer, Shown):
     def animate(self) -> "Animation":
         """Show the best path of each epoch in which it became another one.
 
+        Of a planner that tells of its population all polygons are shown, whenever one changed.
+
         Returns
         -------
         Animation
@@ -273,7 +275,18 @@ class Plan(Answer, Shown):
 
         problem, history = self._asked(), self._history()
         shape = problem.map.weights.shape
-        return growing_path(problem.plot, shape, history.way_points, history.best)
+        ways, best, population = history.way_points, history.best, history.population
+        crowds = population.crowds(len(best)) if population else ()
+        return growing_path(problem.plot, shape, ways, best, crowds)
+
+    def shares(self) -> dict[str, float]:
+        """Tell by how much each way of making and changing a path lowered the cost: name -> cost.
+
+        The first one's is what the first path cost; that less all others is the cost of the path.
+        Empty for a planner that does not tell it (`gapath.history.evolution.Population`).
+        """
+        population = self.evolution.population if self.evolution else None
+        return dict(zip(population.names, population.shares, strict=True)) if population else {}
 
     def _asked(self) -> Problem:
         if self.problem is None:

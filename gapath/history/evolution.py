@@ -59,6 +59,10 @@ class Population(NamedTuple):
             found[:, k] = np.concatenate([[-1], own])[until]
         return found
 
+    def crowds(self, epochs: int) -> list[list[NDArray[np.int32]]]:
+        """Give the polygons of all individuals at the end of each of so many epochs."""
+        return [[self.polygon(i) for i in row if i >= 0] for row in self.standing(epochs).tolist()]
+
 
 class Evolution(NamedTuple):
     """What a genetic algorithm did, epoch by epoch (E epochs).

@@ -4,6 +4,7 @@ import io
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from pathlib import Path
 from string import Template
 from typing import Any
@@ -11,12 +12,13 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from PIL import Image
 
 from gapath.errors import require
-from gapath.pictures.board import draw_path
+from gapath.pictures.board import POINT, draw_path
 from gapath.pictures.shown import text_of
 
 FRAMES = 60
@@ -119,8 +121,11 @@ def growing_path(
     shape: tuple[int, int],
     ways: NDArray[np.int32],
     fitness: NDArray[np.float64],
+    crowds: Sequence[Sequence[NDArray[np.int32]]] = (),
 ) -> Animation:
     """Show how a path grows better: each epoch in which it became another one, and the last.
+
+    With a population's other lines each epoch in which one of these did.
 
     Parameters
     ----------
@@ -132,6 +137,8 @@ def growing_path(
         The path's way points epoch by epoch, as (x, y).
     fitness : (E,) float64
         Its fitness.
+    crowds : sequence of sequence of (n, 2) int32
+        The lines of all individuals epoch by epoch; none if they are not shown.
 
     Returns
     -------
@@ -139,19 +146,25 @@ def growing_path(
         Its moments are epochs from 0 on.
     """
     last = len(ways) - 1
-    changed = 1 + np.flatnonzero((np.diff(ways, axis=0) != 0).any(axis=(1, 2)))
+    changed = {*(1 + np.flatnonzero((np.diff(ways, axis=0) != 0).any(axis=(1, 2)))).tolist()}
+    for epoch, (before, now) in enumerate(pairwise(crowds), 1):
+        if len(before) != len(now) or not all(map(np.array_equal, before, now)):
+            changed.add(epoch)
 
     def scene(axes: Axes) -> Callable[[int], None]:
         begin(axes)
         line = draw_path(axes, ways[0], ways[0, :0])
+        others = LineCollection([], colors=POINT, linewidths=0.8, zorder=1.5)  # below the path
+        axes.add_collection(others, autolim=False)
 
         def show(epoch: int) -> None:
             line.set_data(*ways[epoch].T)
+            others.set_segments(crowds[epoch] if crowds else [])
             axes.set_title(f"epoch {epoch + 1} of {last + 1}: fitness {fitness[epoch]:g}")
 
         return show
 
-    return Animation(shape, chosen(sorted({0, *changed.tolist(), last})), scene)
+    return Animation(shape, chosen(sorted({0, *changed, last})), scene)
 
 
 _PLAYER = Template(

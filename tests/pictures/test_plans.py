@@ -1,12 +1,16 @@
 """What is drawn of a plan, whoever planned: planners are found, not listed."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from gapath_example import bender
 from matplotlib.figure import Figure
 
 import gapath
 from gapath.discovery import yaml_names
-from gapath.problem import Plan, PlanStatus
+from gapath.kernels import rng
+from gapath.problem import Plan, PlanStatus, Problem
 
 WALL = np.full((24, 24), 0.5)
 WALL[:, 12] = 1.0
@@ -60,6 +64,36 @@ def test_an_animation_has_the_best_path_of_each_moment(plans):
             show(epoch)
             assert axes.lines[0].get_xydata().tolist() == history.way_points[epoch].tolist()
         assert epoch == plan.epochs - 1
+
+
+@pytest.fixture
+def bent():
+    """A plan whose planner tells what its population took in."""
+    ground = GAP * np.where(GAP < 1, np.random.default_rng(1).random(GAP.shape), 1)
+    problem = Problem(gapath.GridMap("ground", ground), (2, 2), (21, 21))
+    planner = bender.Planner(individuals=3, epochs=40, tries=60)
+    return replace(planner.plan(problem, rng.stream(4)), problem=problem)
+
+
+def test_an_animation_shows_all_individuals_whenever_one_changed(bent):
+    population, axes = bent.evolution.population, Figure().subplots()
+    animation = bent.animate()
+    assert {*(population.epochs - 1).tolist()} <= {*animation.moments}
+    show = animation.scene(axes)
+    (others,) = axes.collections
+    for epoch in animation.moments:
+        show(epoch)
+        standing = population.standing(bent.epochs)[epoch].tolist()
+        expected = [population.polygon(i).tolist() for i in standing if i >= 0]
+        assert [segment.tolist() for segment in others.get_segments()] == expected
+    assert len(animation.frames) == len(animation.moments)
+
+
+def test_shares_come_to_the_cost_of_the_path(bent):
+    first, *lowered = bent.shares().values()
+    assert list(bent.shares()) == list(bender.NAMES)
+    assert first - sum(lowered) == bent.cost < first
+    assert gapath.plan(bent.problem.map, (2, 2), (21, 21), planner="astar").shares() == {}
 
 
 def test_a_plan_that_does_not_know_its_problem_says_so():
