@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from gapath.events import Event, Evolved, RunStarted, Surveyed, TrialFinished, TrialStarted
 from gapath.grid import GridMap
+from gapath.history.evolution import Evolution
 from gapath.history.graph import Graph
 from gapath.kernels.raster import polyline
 from gapath.recorders.rerun.drawing import (
@@ -26,6 +27,13 @@ from gapath.recorders.rerun.drawing import (
     new_stream,
     problem_rows,
     send_curve,
+)
+from gapath.recorders.rerun.population_scene import (
+    LEGEND,
+    changes_view,
+    gains_view,
+    log_population,
+    share_rows,
 )
 
 NEEDS: frozenset[type[Event]] = frozenset({TrialFinished})
@@ -106,8 +114,10 @@ def _log_evolution(
         )
         _send_points(stream, "map/best/control_points", time, points, PURPLE, 4)
 
+    if evolution.population:
+        log_population(stream, evolution.population, epochs, first_epoch, TIMELINE)
     best, mean = evolution.best, evolution.mean
-    if evolution.genotype != "keypoints":  # lengths are all of one size, costs are not
+    if _over_many_sizes(evolution):
         with np.errstate(divide="ignore", invalid="ignore"):
             best, mean = np.log10(best), np.log10(mean)
     send_curve(stream, "fitness/mean", time, mean, "mean of the population", GREY)
@@ -116,6 +126,11 @@ def _log_evolution(
     send_curve(stream, "obstacles/best", time, obstacles, "obstacle fields", ORANGE)
     # A line at 0, so that the axis starts there.
     send_curve(stream, "obstacles/none", time, np.zeros(epochs), "none", GREEN)
+
+
+def _over_many_sizes(evolution: Evolution) -> bool:
+    """Tell whether fitness counts obstacles, which are dearer by far than any path."""
+    return evolution.genotype != "keypoints" and evolution.population is None
 
 
 def _log_result(
@@ -181,12 +196,15 @@ def _text(
         effort = {"epochs": finished.answer.epochs, "evaluations": finished.answer.evaluations}
     else:
         effort = {"expansions": finished.answer.expansions}
+    populations = [e.evolution.population for e in evolutions if e.evolution.population]
+    shares = share_rows(populations[0]) if populations else {}
     rows = {
         "status": finished.answer.status.name.lower().replace("_", " "),
         "cost": _number(finished.answer.cost),
         "optimal cost": _number(run.optimal_cost),
         "fields of the path": len(finished.answer.path),
         **effort,
+        **shares,
         **problem_rows(run, trial),
     }
     moving = ""
@@ -194,6 +212,8 @@ def _text(
         moving = "- **orange**: best path of the epoch; dots: its way points\n"
         if evolutions[0].evolution.genotype == "control_points":
             moving += "- **purple**: its control points and their polygon\n"
+    if populations:
+        moving += LEGEND
     if surveyed:
         moving += "- **red**: obstacles grown by the robot's radius, keypoints\n"
         moving += "- **thin purple**: lines between keypoints that meet no obstacle\n"
@@ -212,21 +232,27 @@ def _number(value: float) -> str:
 
 def _blueprint(run: RunStarted, evolutions: list[Evolved]) -> rrb.Blueprint:
     """Lay the views out: a large map above two curves, text on the right."""
-    view = map_view(run.problem.map)
+    view: rrb.View | rrb.Container = map_view(run.problem.map)
+    panels: list[rrb.View] = [rrb.TextDocumentView(origin="text", name="Settings and result")]
     if evolutions:
-        by_length = evolutions[0].evolution.genotype == "keypoints"
-        what = "Length of the path" if by_length else "log10 of the cost, obstacles as VLN"
+        evolution = evolutions[0].evolution
+        by_length = evolution.genotype == "keypoints"
+        cost = "log10 of the cost, obstacles as VLN" if _over_many_sizes(evolution) else "Cost"
+        what = "Length of the path" if by_length else cost
         plain = rrb.PlotLegend(visible=False)  # it would hide the best or the worst
+        beside: rrb.View = rrb.TimeSeriesView(
+            origin="obstacles", name="Obstacle fields on the best path", plot_legend=plain
+        )
+        if evolution.population:
+            beside = gains_view()
+            panels.append(changes_view())
         curves = rrb.Horizontal(
             rrb.TimeSeriesView(
                 origin="fitness",
                 name=f"{what}: best (orange), mean (grey)",
                 plot_legend=plain,
             ),
-            rrb.TimeSeriesView(
-                origin="obstacles", name="Obstacle fields on the best path", plot_legend=plain
-            ),
+            beside,
         )
         view = rrb.Vertical(view, curves, row_shares=[2, 1])
-    text = rrb.TextDocumentView(origin="text", name="Settings and result")
-    return blueprint(view, [text], TIMELINE)
+    return blueprint(view, panels, TIMELINE)
