@@ -73,8 +73,8 @@ def log_population(
         strict=True,
     )
     texts = [
-        f"{population.names[operator]}: individual {individual} costs {cost:g}"
-        + (f", {gain:g} less" if gain else "")
+        f"{population.names[operator]}, {individual}: {cost:g}"
+        + (f", {gain:.3g} less" if gain else "")
         for operator, individual, cost, gain in told
     ]
     levels = ["INFO" if gain else "DEBUG" for gain in population.gains]
