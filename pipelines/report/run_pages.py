@@ -19,6 +19,7 @@ from gapath.pipelines.numbers.text import file_size, number, percent
 from gapath.pipelines.page.page import script, style, template
 from gapath.pipelines.papers.names import label, rank
 from gapath.pipelines.reading.logs import has_log
+from gapath.pipelines.report.found_by import found_by
 from gapath.pipelines.report.stills import MOST_BYTES, MOST_RUNS, newest_logs, stills_of
 from gapath.recorders.mcap import FILE
 from gapath.store.durable import write_whole
@@ -203,6 +204,7 @@ def _pages(
             files=_files(run, place),
             stills=stills,
             no_stills=no_stills,
+            found_by=found_by(stills.shares) if stills and stills.shares else None,
             shown=min(known.trials, MOST_TRIALS),
             trials=known.trials,
             lines=_lines(rows[key]),

@@ -20,7 +20,7 @@ MOST_RUNS, MOST_BYTES = 100, 1 << 25
 """Only so many runs get stills, whose logs have so many bytes in all: the newest that fit."""
 
 _TRIALS = 5
-"""Trials whose paths are drawn: a log is read no further."""
+"""Trials whose paths are drawn: a log is read further only where these tell what found the path."""
 
 _SIDE = 512
 """Longest side of a map's picture; a larger map is drawn smaller."""
@@ -50,6 +50,8 @@ class Stills(NamedTuple):
         The points of a best path; empty where there is none.
     stills : list of Still
         The pictures.
+    shares : list of dict of str to float
+        What found the path, of each trial that tells it (`Population.shares`): name -> cost.
     """
 
     map: str
@@ -59,6 +61,7 @@ class Stills(NamedTuple):
     size: float
     least: str
     stills: list[Still]
+    shares: list[dict[str, float]]
 
 
 def newest_logs(runs: Iterable[RunRecord]) -> set[str]:
@@ -103,36 +106,41 @@ def stills_of(run: RunRecord) -> Stills | str:
         events = events_of(run)
         start = run_start(events)
         grid, problem = start.problem.map, start.problem
-        stills = _stills(events)
+        stills, shares = _stills(events)
     except InputError as error:
         return str(error)
     ends = [("S", *problem.start), ("T", *problem.target)]
     size = max(0.4, max(grid.cols, grid.rows) / 45)
     least = _points(start.optimal_path)
-    return Stills(_picture(grid), grid.cols, grid.rows, ends, size, least, stills)
+    return Stills(_picture(grid), grid.cols, grid.rows, ends, size, least, stills, shares)
 
 
-def _stills(events: Iterator[Event]) -> list[Still]:
+def _stills(events: Iterator[Event]) -> tuple[list[Still], list[dict[str, float]]]:
     history: list[Still] = []
+    shares: list[dict[str, float]] = []
     ways: list[str] = []
     places: list[Field] = []
     ended = 0
     for event in events:
-        if isinstance(event, Evolved) and not history:
-            history = _epochs(event)
+        if isinstance(event, Evolved):
+            history = history or _epochs(event)
+            if population := event.evolution.population:
+                shares.append(dict(zip(population.names, population.shares, strict=True)))
         elif isinstance(event, Stepped):
             places.append(event.place)
         elif isinstance(event, Finished):
             ended += 1
             if places and not history:
                 history = _steps(event, places)
-            way = _points(event.answer.path if isinstance(event, TrialFinished) else places)
-            ways += [way] if way else []
+            if ended <= _TRIALS:
+                way = _points(event.answer.path if isinstance(event, TrialFinished) else places)
+                ways += [way] if way else []
             places = []
-            if ended == _TRIALS:
+            if ended >= _TRIALS and not shares:
                 break
-    them = "The first trial" if ended == 1 else f"The first {ended} trials"
-    return [*history, Still(f"{them}: {len(ways)} with a way to show", ways)]
+    drawn = min(ended, _TRIALS)
+    them = "The first trial" if drawn == 1 else f"The first {drawn} trials"
+    return [*history, Still(f"{them}: {len(ways)} with a way to show", ways)], shares
 
 
 def _epochs(event: Evolved) -> list[Still]:

@@ -1,18 +1,30 @@
 """The pages of runs: what they say, where they lead to, and what is left of earlier ones."""
 
 import re
+import statistics
 from dataclasses import replace
 from urllib.parse import unquote
 
+import numpy as np
 import pandas as pd
 import pytest
+from gapath_example import bender
 
+from gapath.events import RunFinished, RunStarted
+from gapath.grid import GridMap
+from gapath.kernels import rng
+from gapath.pipelines.numbers.text import number
 from gapath.pipelines.report import stills as stills_module
+from gapath.pipelines.report.found_by import found_by
 from gapath.pipelines.report.report import make_report
 from gapath.pipelines.report.run_pages import MOST_TRIALS, Addresses, _lines, _rows
 from gapath.pipelines.report.stills import newest_logs, stills_of
-from gapath.recorders.mcap import FILE
+from gapath.planning.shortest_path import shortest_path
+from gapath.planning.simulation import TimedPlan
+from gapath.problem import Problem
+from gapath.recorders.mcap import FILE, Recorder
 from gapath.store.records import FileEntry, find_runs, read_record
+from gapath.tasks.plan import trial_events
 
 from ..conftest import record_of, sign
 from ..synthetic import make_map, make_trials
@@ -140,6 +152,76 @@ def test_a_genetic_algorithm_is_drawn_at_its_first_middle_and_last_epoch(tmp_pat
     )
     assert (drawn.cols, drawn.rows) == (24, 12)
     assert drawn.ends == [("S", 1, 6), ("T", 22, 6)]
+
+
+def bent(outputs, make_run, trials=9):
+    """Give a run whose planner tells what found the path, and what it told."""
+    run = make_run(outputs, "plan", "kg18_test2", "ga1", n=trials)
+    grid = GridMap("ground", np.where(np.arange(24 * 40).reshape(24, 40) % 7, 0.5, 0.125))
+    problem = Problem(grid, (2, 12), (36, 10))
+    planner = bender.Planner(individuals=3, epochs=20, tries=30)
+    start = RunStarted(
+        "plan",
+        "bender",
+        "plan",
+        problem,
+        0,
+        trials,
+        {},
+        {"gapath": "0"},
+        shortest_path(problem).path,
+        11.0,
+    )
+    recorder, step, told = Recorder(flush_every=100), 0, []
+    recorder.open(str(run))
+    recorder.record(start)
+    for trial in range(trials):
+        plan = planner.plan(problem, rng.stream(8, trial))
+        told.append(plan.shares())
+        for event in trial_events(TimedPlan(trial, plan, 0.0), 0, step):
+            recorder.record(event)
+        step += plan.epochs
+    recorder.record(RunFinished(step, trials, trials))
+    recorder.close()
+    sign(run)
+    return run, told
+
+
+def test_a_run_says_what_found_the_path(tmp_path, make_run):
+    run, told = bent(tmp_path, make_run)
+    assert stills_of(read_record(run)).shares == told  # of all nine, though five are drawn
+    page = page_of(tmp_path, run.name)
+    head = r'<th scope="row" class="head own"[^>]*>(.*?)</th>'
+    rows = dict(re.findall(rf"{head}\s*<td[^>]*>(.*?)</td>", page))
+    names = list(bender.NAMES)
+    first, moved = ([each[name] for each in told] for name in (names[0], names[2]))
+    final = [each[names[0]] - sum(each[name] for name in names[1:]) for each in told]
+    assert statistics.median(moved) > 0
+    for name, values in (("first path: first bend", first), ("path found", final),
+                         ("lowered by moved vertex", moved)):  # fmt: skip
+        assert rows[name].startswith(f"{number(statistics.median(values))} (")
+    assert "What found the path" in page and "over the 9 trials" in page
+
+
+def test_shares_are_told_by_hand():
+    shares = [
+        {"wall": 10.0, "pull": 2.0, "cross": 0.0, "none": 0.0},
+        {"wall": 20.0, "pull": 2.0, "cross": 8.0, "none": 0.0},
+        {"wall": 0.0, "pull": 0.0, "cross": 0.0, "none": 0.0},
+    ]
+    table = found_by(shares)
+    assert table.data["what"].tolist() == [
+        "first path: wall", "lowered by pull", "lowered by cross", "path found"
+    ]  # fmt: skip
+    assert table.data["cost"].tolist() == [10, 2, 0, 8]
+    assert table.data["part"].tolist() == pytest.approx([1, 0.15, 0.2, 0.65])
+    assert table.data["trials"].tolist() == [3, 2, 1, 3]
+
+
+def test_a_run_that_does_not_tell_it_has_no_such_table(tmp_path, make_run):
+    run = make_run(tmp_path, "table1", "kg18_test3", "ga1", n=8)
+    assert stills_of(read_record(run)).shares == []
+    assert "What found the path" not in page_of(tmp_path, run.name)
 
 
 def test_a_drive_is_drawn_as_it_goes_on(tmp_path, make_drive_run):

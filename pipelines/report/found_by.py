@@ -1,0 +1,56 @@
+"""What found the paths of a run: the first path, and what lowered its cost."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import pandas as pd
+
+from gapath.pipelines.numbers.text import middle, percent
+from gapath.pipelines.page.section import Table
+
+
+def found_by(shares: Sequence[Mapping[str, float]]) -> Table:
+    """Make the table of what found the paths.
+
+    Parameters
+    ----------
+    shares : sequence of dict of str to float
+        What a planner tells of each trial (`gapath.history.evolution.Population.shares`): name ->
+        cost, the first one's that of the first path. At least one trial.
+
+    Returns
+    -------
+    Table
+        A row for the first path, one for each other name that lowered the cost, and one for the
+        path that was found: medians over the trials, and in how many of them.
+    """
+    told = pd.DataFrame(list(shares)).fillna(0.0)
+    first, lowered = told.iloc[:, 0], told.iloc[:, 1:]
+    rows = {f"first path: {told.columns[0]}": first}
+    others = [name for name in lowered if lowered[name].any()]
+    rows |= {f"lowered by {name}": lowered[name] for name in others}
+    rows["path found"] = first - lowered.sum(axis=1)
+    parts = [values / first.where(first > 0) for values in rows.values()]
+    quartiles = [np.quantile(values, (0.5, 0.25, 0.75)).tolist() for values in rows.values()]
+    data = pd.DataFrame(
+        {
+            "what": list(rows),
+            **{name: [q[i] for q in quartiles] for i, name in enumerate(("cost", "q1", "q3"))},
+            "part": [part.median() for part in parts],
+            "trials": [len(told), *(int((lowered[name] > 0).sum()) for name in others), len(told)],
+        }
+    )
+    shown = pd.DataFrame(
+        {
+            "what": data["what"],
+            "cost": [middle(*each) for each in quartiles],
+            "% of the first path's": [percent(part) for part in data["part"].fillna(0)],
+            "in trials": data["trials"].astype(str),
+        }
+    )
+    caption = (
+        f"Cost, medians (quartiles) over the {len(told)} trials of the log that tell it, each by "
+        "itself: what the first path cost, by how much it was lowered since, what the path found "
+        "costs."
+    )
+    return Table("found_by", caption, data, shown, heads=1, sortable=False)
