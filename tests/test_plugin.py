@@ -93,6 +93,24 @@ def test_its_planner_its_table_and_its_metric_stand_in_the_report_of_a_sweep(sit
     assert "One bend" in (report / "index.html").read_text()
 
 
+def test_its_population_is_logged_recorded_reproduced_and_reported(site, tmp_path):
+    command = ("gapath", "map=kg18_test2", "planner=bender", "planner.epochs=12", "trials=8",
+               "recorder=[mcap,rerun]")  # fmt: skip
+    succeed(site, tmp_path, *command)
+    folder = only(tmp_path / "outputs" / "plan")
+    told = succeed(site, tmp_path, "gapath-log", "info", folder)
+    assert int(re.search(r"/memetic_run +(\d)", told)[1]) > 5 and "/ga_run" not in told
+    assert "reproduced" in succeed(site, tmp_path, "gapath-log", "verify", folder)
+    succeed(site, tmp_path, "gapath-log", "rerun", folder, "--trials", "0,1", "-o", "again")
+    assert len(list((tmp_path / "again").iterdir())) == 2
+    cut = tmp_path / "run.mcap.part"
+    cut.write_bytes((folder / "run.mcap").read_bytes()[:-1500])
+    assert "events saved" in succeed(site, tmp_path, "gapath-log", "salvage", cut)
+    succeed(site, tmp_path, "gapath-report", "outputs")
+    page = tmp_path / "outputs" / "report" / "runs" / f"{folder.name}.html"
+    assert "first path: first bend" in page.read_text("utf-8")
+
+
 def test_its_navigator_drives(site, tmp_path):
     command = ("gapath", "task=drive", "map=kg18_map1", "navigator=wait_and_see", "recorder=mcap")
     assert "outcome       reached" in succeed(site, tmp_path, *command)
@@ -286,8 +304,9 @@ def test_a_component_that_lacks_something_is_one_clear_error(
 
 def test_its_components_keep_the_contracts(site):
     """The tests that find every component find an installed package's, too."""
-    tests = ["tests/test_contract.py", "tests/metrics", "tests/driving/test_driving.py"]
-    names = "one_bend or wait_and_see or detour or counts or weights or round_trip"
+    tests = ["tests/test_contract.py", "tests/metrics", "tests/driving/test_driving.py",
+             "tests/history"]  # fmt: skip
+    names = "one_bend or bender or wait_and_see or detour or counts or weights or round_trip"
     command = [sys.executable, "-m", "pytest", "-n", "0", "-k", names, *tests]
     done = subprocess.run(
         command,
