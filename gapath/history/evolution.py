@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 
 class Population(NamedTuple):
-    """What a memetic algorithm's population took in, in order (m changes).
+    """What a memetic algorithm's population took in, in order (m changes, at least one).
 
     A change makes an individual, a polygon whose vertices straight lines join
     (`gapath.kernels.raster.polyline`), into another one: from then on it is the individual.

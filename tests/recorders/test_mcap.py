@@ -71,7 +71,8 @@ def with_populations(draw):
     some = st.lists(paths(least=1), min_size=1, max_size=6)
     polygons, names = draw(some), draw(st.lists(st.text(), min_size=1, max_size=3))
     m = len(polygons)
-    first = draw(st.lists(st.integers(1, 3), min_size=m, max_size=m).map(sorted))
+    later = st.lists(st.integers(1, 3), min_size=m - 1, max_size=m - 1)
+    first = [1, *sorted(draw(later))]
     population = Population(
         epochs=np.array(first, dtype=np.int32),
         individuals=draw(arrays(np.int32, m, elements=int32)),
@@ -84,8 +85,8 @@ def with_populations(draw):
         shares=tuple(draw(st.floats()) for _ in names),
     )
     width = max(map(len, polygons)) + draw(st.integers(0, 2))
-    numbers = range(first[0] - 1, draw(st.integers(0, 4)))
-    best = [draw(st.sampled_from(polygons[: first.count(1)])) for _ in numbers if first[0] == 1]
+    epochs = range(first[-1] + draw(st.integers(0, 1)))
+    best = [draw(st.sampled_from(polygons[: first.count(1)])) for _ in epochs]
     rows = [np.concatenate([each, each[-1:].repeat(width - len(each), 0)]) for each in best]
     way_points = np.array(rows, dtype=np.int32).reshape(len(best), width, 2)
     values = (draw(arrays(np.float64, len(best))) for _ in range(2))

@@ -91,8 +91,9 @@ def test_a_change_is_as_long_as_what_it_changed():
 
 
 LIES = {
-    "epochs fall": ("epochs", lambda a: a[::-1].copy(), "numbers from 1 that do not fall"),
-    "epochs from 0": ("epochs", lambda a: a - 1, "numbers from 1 that do not fall"),
+    "epochs fall": ("epochs", lambda a: a[::-1].copy(), "numbers from 1 to 12 that do not fall"),
+    "epochs from 0": ("epochs", lambda a: a - 1, "numbers from 1 to 12 that do not fall"),
+    "epochs after the last": ("epochs", lambda a: a + 12, "numbers from 1 to 12 that do not fall"),
     "an epoch less": ("epochs", lambda a: a[:-1], "parts of one length"),
     "a gain less": ("gains", lambda a: a[:-1], "parts of one length"),
     "a mean less": ("mean", lambda a: a[:-1], "parts of one length"),
@@ -127,6 +128,16 @@ def test_a_message_that_lies_is_refused(field, change, expected, tmp_path, monke
     with pytest.raises(InputError, match=expected) as refused:
         list(mcap.read_events(path))
     assert "run.mcap" in str(refused.value)
+
+
+def test_a_population_that_took_nothing_in_is_refused():
+    event = evolved()
+    message = TYPES.deserialize_cdr(
+        memetic_run(event, event.evolution.population).data, log_format.TOPICS["/memetic_run"]
+    )
+    arrays = {n: v[:0] for n, v in vars(message).items() if isinstance(v, np.ndarray)}
+    with pytest.raises(InputError, match="numbers from 1 to 0"):
+        read_memetic_run(0, dataclasses.replace(message, **arrays | {"names": []}))
 
 
 def test_what_repeats_itself_without_end_is_not_put_together():

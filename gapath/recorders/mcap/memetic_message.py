@@ -45,7 +45,7 @@ def memetic_run(event: Evolved, population: Population) -> Record:
     led = leaders(population.epochs, population.ends, population.vertices, rows)
     same = np.array_equal(evolution.chromosomes.ravel(), rows.ravel())
     _fit(same and (led >= 0).all(), "a best polygon", "one that a change left")
-    _check(population)
+    _check(population, len(rows))
     size = rows.nbytes + population.vertices.nbytes
     require(size <= MAX_CHUNK // 2, "recorder.mcap", f"polygons of {size} bytes", _FEWER)
     heads, tails, ends, vertices = shortened(
@@ -107,7 +107,7 @@ def read_memetic_run(step: int, m: Any) -> Evolved:
         names=tuple(m.names),
         shares=tuple(m.shares.tolist()),
     )
-    _check(population)
+    _check(population, epochs)
     way_points = np.empty((epochs, m.way_points_count, 2), dtype=np.int32)
     for row, leader in zip(way_points, led.tolist(), strict=True):
         _fit(0 <= leader < count, f"leader {leader}", f"one of {count} changes")
@@ -120,10 +120,12 @@ def read_memetic_run(step: int, m: Any) -> Evolved:
     return Evolved(step, m.trial, m.call, evolution)
 
 
-def _check(population: Population) -> None:
+def _check(population: Population, count: int) -> None:
     epochs, operators = population.epochs, population.operators
-    in_order = (epochs[:1] >= 1).all() and (np.diff(epochs) >= 0).all()
-    _fit(in_order, "epochs", "numbers from 1 that do not fall")
+    in_order = (
+        len(epochs) and epochs[0] >= 1 and epochs[-1] <= count and (np.diff(epochs) >= 0).all()
+    )
+    _fit(in_order, "epochs", f"numbers from 1 to {count} that do not fall")
     known = (operators >= 0) & (operators < len(population.names))
     _fit(known.all(), "operators", "numbers of names")
     _fit(len(population.names) == len(population.shares), "names", "a share each")
