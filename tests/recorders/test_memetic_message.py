@@ -136,7 +136,7 @@ def test_a_population_that_took_nothing_in_is_refused():
         memetic_run(event, event.evolution.population).data, log_format.TOPICS["/memetic_run"]
     )
     arrays = {n: v[:0] for n, v in vars(message).items() if isinstance(v, np.ndarray)}
-    with pytest.raises(InputError, match="numbers from 1 to 0"):
+    with pytest.raises(InputError, match="got no changes, expected at least one"):
         read_memetic_run(0, dataclasses.replace(message, **arrays | {"names": []}))
 
 
@@ -158,21 +158,25 @@ def test_what_repeats_itself_without_end_is_not_put_together():
         read_memetic_run(0, lie)
 
 
-@pytest.mark.parametrize(
-    ("change", "expected"),
-    [
-        (lambda e: e._replace(way_points=e.way_points + 1, chromosomes=e.chromosomes + 1), "left"),
-        (lambda e: e._replace(chromosomes=e.chromosomes + 1), "left"),
-        (lambda e: e._replace(population=e.population._replace(shares=(1.0,))), "a share each"),
-        (lambda e: e._replace(population=e.population._replace(epochs=e.population.epochs + 1)),
-         "left"),
-    ],
-)  # fmt: skip
+ODD = {
+    "other rows": (lambda e, p: (e._replace(way_points=e.way_points + 1), p), "a change left"),
+    "other genes": (lambda e, p: (e._replace(chromosomes=e.chromosomes + 1), p), "a change left"),
+    "a share less": (lambda e, p: (e, p._replace(shares=(1.0,))), "a share each"),
+    "epoch 1 without": (lambda e, p: (e, p._replace(epochs=np.maximum(p.epochs, 2))), "left"),
+    "a gain less": (lambda e, p: (e, p._replace(gains=p.gains[1:])), "parts of one length"),
+    "an end less": (lambda e, p: (e, p._replace(ends=p.ends[:-1])), "parts of one length"),
+    "a vertex less": (lambda e, p: (e, p._replace(vertices=p.vertices[1:])), "do not fall"),
+    "ends that fall": (lambda e, p: (e, p._replace(ends=p.ends[::-1].copy())), "do not fall"),
+    "negative ends": (lambda e, p: (e, p._replace(ends=p.ends - p.ends[0] - 1)), "do not fall"),
+}
+
+
+@pytest.mark.parametrize(("change", "expected"), ODD.values(), ids=ODD)
 def test_an_evolution_at_odds_with_its_population_is_not_logged(change, expected):
     event = evolved()
-    lie = change(event.evolution)
+    lie, population = change(event.evolution, event.evolution.population)
     with pytest.raises(InputError, match=expected):
-        memetic_run(dataclasses.replace(event, evolution=lie), lie.population)
+        memetic_run(dataclasses.replace(event, evolution=lie), population)
 
 
 def test_what_could_not_be_read_is_not_written(monkeypatch):

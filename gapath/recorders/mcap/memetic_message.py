@@ -42,10 +42,10 @@ def memetic_run(event: Evolved, population: Population) -> Record:
     """
     evolution = event.evolution
     rows = np.ascontiguousarray(evolution.way_points, np.int32)
+    _check(population, len(rows))
     led = leaders(population.epochs, population.ends, population.vertices, rows)
     same = np.array_equal(evolution.chromosomes.ravel(), rows.ravel())
     _fit(same and (led >= 0).all(), "a best polygon", "one that a change left")
-    _check(population, len(rows))
     size = rows.nbytes + population.vertices.nbytes
     require(size <= MAX_CHUNK // 2, "recorder.mcap", f"polygons of {size} bytes", _FEWER)
     heads, tails, ends, vertices = shortened(
@@ -121,7 +121,13 @@ def read_memetic_run(step: int, m: Any) -> Evolved:
 
 
 def _check(population: Population, count: int) -> None:
-    epochs, operators = population.epochs, population.operators
+    """Refuse what kernels would read past, and what nobody could show."""
+    epochs, operators, ends = population.epochs, population.operators, population.ends
+    _fit(len(epochs), "no changes", "at least one")
+    _fit(len({len(part) for part in population[:6]}) == 1, "changes", "parts of one length")
+    vertices = len(population.vertices)
+    in_order = (np.diff(ends, prepend=0) >= 0).all() and ends[-1] == vertices
+    _fit(in_order, "ends", f"numbers that do not fall, the last one {vertices}")
     in_order = (
         len(epochs) and epochs[0] >= 1 and epochs[-1] <= count and (np.diff(epochs) >= 0).all()
     )
