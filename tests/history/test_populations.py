@@ -41,6 +41,8 @@ def check_population(problem, plan):
                   population.costs, population.ends)  # fmt: skip
     assert {len(part) for part in of_changes} == {m}
     assert len(population.vertices) == population.ends[-1]
+    kinds = ["int32", "int32", "int32", "float64", "float64", "int32", "int32"]
+    assert [part.dtype.name for part in population[:7]] == kinds
     assert population.epochs[0] == 1
     assert (np.diff(population.epochs) >= 0).all() and population.epochs[-1] <= epochs
     assert (population.operators >= 0).all()
@@ -100,6 +102,7 @@ LIES = {
     "a dearer change": lambda e, p: (e, p._replace(costs=p.costs + 1)),
     "another polygon": lambda e, p: (e, p._replace(vertices=p.vertices[::-1].copy())),
     "a larger gain": lambda e, p: (e, p._replace(gains=p.gains + 1)),
+    "longer integers": lambda e, p: (e, p._replace(operators=p.operators.astype(np.int64))),
     "an epoch too late": lambda e, p: (e, p._replace(epochs=p.epochs + len(e.best))),
     "epochs that fall": lambda e, p: (e, p._replace(epochs=p.epochs[::-1].copy())),
     "another best": lambda e, p: (e._replace(best=e.best + 1), p),
