@@ -57,6 +57,7 @@ class PlanStatus(IntEnum):
     FOUND = 0
     NOT_FOUND = 1
     INFEASIBLE = 2
+    OPTIMAL = 3
 
     @property
     def sentence(self) -> str:
@@ -65,6 +66,7 @@ class PlanStatus(IntEnum):
             "a feasible path was found",
             "the planner stopped without a feasible path",
             "no path exists on the map, or in the graph that the planner made of it",
+            "a path was found, and the planner proved that none costs less",
         )[self]
 
 
@@ -154,7 +156,7 @@ class Answer:
         How the query ended.
     path : (n, 2) int32
         Fields (x, y) from start to target, each a neighbour of the one before; empty
-        unless the status is FOUND.
+        unless the status is FOUND or OPTIMAL.
     weights : float
         The sum of the weights of the path's fields, start included; for a genetic algorithm
         without success of its best path's, obstacles left out; infinite where there is nothing
@@ -187,7 +189,7 @@ class Answer:
     @property
     def feasible(self) -> bool:
         """True if the path joins start and target without an obstacle."""
-        return self.status is PlanStatus.FOUND
+        return self.status in (PlanStatus.FOUND, PlanStatus.OPTIMAL)
 
     @property
     def answer(self) -> "Answer":

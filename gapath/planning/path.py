@@ -99,3 +99,21 @@ def polyline_length(way_points: NDArray[np.int32]) -> float:
     """
     steps = np.diff(way_points.astype(np.float64), axis=0)
     return float(np.sqrt((steps * steps).sum(axis=1)).sum())
+
+
+def corners(path: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Leave out every field of a path at which it goes on as it came.
+
+    Parameters
+    ----------
+    path : (n, 2) int32
+        Fields (x, y), each a neighbour of the one before; n >= 1.
+
+    Returns
+    -------
+    (m, 2) int32
+        Its ends, and the fields at which it turns: straight lines that join them are the path.
+    """
+    turns = (np.diff(path, n=2, axis=0) != 0).any(axis=1)
+    inner = path[1:-1][turns]
+    return np.concatenate([path[:1], inner, path[len(path) - 1 :]])

@@ -13,7 +13,7 @@ from gapath.kernels import rng
 from gapath.kernels.raster import polyline
 from gapath.planning.flaw import flaw
 from gapath.planning.path import path_weights
-from gapath.problem import CornerCutting, PlanStatus, Problem
+from gapath.problem import CornerCutting, Problem
 
 EXAMPLE = bender.Planner(individuals=4, epochs=30, tries=80)
 
@@ -35,7 +35,7 @@ def check_population(problem, plan):
     """Raise AssertionError if a plan's history is at odds with itself or with the plan."""
     evolution, population = plan.evolution, plan.evolution.population
     epochs, m = len(evolution.best), len(population.epochs)
-    assert plan.status is PlanStatus.FOUND
+    assert plan.feasible
     assert evolution.genotype == "polygon"
     of_changes = (population.individuals, population.operators, population.gains,
                   population.costs, population.ends)  # fmt: skip

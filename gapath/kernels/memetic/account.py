@@ -1,0 +1,20 @@
+"""What the memetic algorithm is set to, and what it tells: places in the arrays for both."""
+
+POPULATION, HANDS, EFFORT, TOLERANCE, CROSSOVER_THRESHOLD, REROUTE_THRESHOLD = range(6)
+"""What the kernel is set to: EFFORT and TOLERANCE in units of 1 / `UNIT`, probabilities as
+`gapath.kernels.rng.probability_threshold` gives them. (numba takes long to look at a record.)"""
+
+UNIT = 1024
+
+WALLS, LOOPS, ASIDE, PULLING, COARSE, NEWCOMER, CROSSOVER, REROUTE, VERTICES = range(9)
+"""What finds a path and makes it cheaper; from VERTICES on the four of `mutations`."""
+OPERATORS = VERTICES + 4
+"""How many there are."""
+
+STATUS, BEST, LOWER, INDIVIDUAL, EPOCHS, EVALUATIONS, CHANGES, POINTS, SHARES = range(9)
+NUMBERS = SHARES + OPERATORS
+"""What comes out besides: the fields of the first path, or what it is instead
+(`gapath.kernels.memetic.walls.NO_WAY`); the sum of the best path's weights, its start left out;
+what no path can undercut; which individual is best; epochs; how many newcomers, crossovers and
+mutations were tried; what the diary holds; and how much each operator lowered the cost of the best
+individual, of WALLS what the first path costs."""

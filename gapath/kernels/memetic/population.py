@@ -1,0 +1,173 @@
+"""The population: polygons of different homotopy, and a diary of all that it took in."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gapath.kernels.jit import kernel
+from gapath.kernels.memetic.rays import field_at, ray
+
+RUNGS = 16
+"""Places at which two polygons are compared."""
+
+
+class Individuals(NamedTuple):
+    """P polygons, one a row."""
+
+    points: NDArray[np.int32]
+    """(P, n, 2) vertices as (x, y), start and target included."""
+    costs: NDArray[np.int64]
+    """(P, n) what each vertex's ray to the next one costs, in units of 1 / SCALE."""
+    sizes: NDArray[np.int64]
+    """(P,) how many vertices count."""
+    totals: NDArray[np.int64]
+    """(P,) the sum of the costs: the weights of all fields but the start."""
+
+
+class Diary(NamedTuple):
+    """Every polygon that the population took in, in order."""
+
+    changes: NDArray[np.int64]
+    """(n, 6) EPOCH, INDIVIDUAL, OPERATOR, GAIN, TOTAL and END of each."""
+    vertices: NDArray[np.int32]
+    """(m, 2) their vertices, one polygon after the other."""
+    counts: NDArray[np.int64]
+    """(2,) how many changes and vertices count."""
+
+
+EPOCH, ROW, OPERATOR, GAIN, TOTAL, END = range(6)
+"""Columns of a diary: by how much the individual became cheaper, what it costs then, and the end
+of its vertices."""
+
+
+@kernel
+def individuals(population: int, vertices: int) -> Individuals:
+    """Make room for a population of so many polygons with so many vertices; none is there yet."""
+    return Individuals(
+        np.empty((population, vertices, 2), dtype=np.int32),
+        np.empty((population, vertices), dtype=np.int64),
+        np.zeros(population, dtype=np.int64),
+        np.zeros(population, dtype=np.int64),
+    )
+
+
+@kernel
+def with_room(members: Individuals, vertices: int) -> Individuals:
+    """Give a population with room for polygons of so many vertices."""
+    if vertices <= members.points.shape[1]:
+        return members
+    wider = individuals(members.points.shape[0], 2 * vertices)
+    for k in range(members.points.shape[0]):
+        n = members.sizes[k]
+        wider.points[k, :n] = members.points[k, :n]
+        wider.costs[k, :n] = members.costs[k, :n]
+        wider.sizes[k], wider.totals[k] = n, members.totals[k]
+    return wider
+
+
+@kernel
+def put(
+    members: Individuals,
+    row: int,
+    points: NDArray[np.int32],
+    costs: NDArray[np.int64],
+    size: int,
+    total: int,
+) -> Individuals:
+    """Put a polygon in a row; gives the population, which may have moved."""
+    members = with_room(members, size)
+    members.points[row, :size] = points[:size]
+    members.costs[row, : size - 1] = costs[: size - 1]
+    members.sizes[row], members.totals[row] = size, total
+    return members
+
+
+@kernel
+def noted(
+    diary: Diary, members: Individuals, epoch: int, row: int, operator: int, gain: int
+) -> Diary:
+    """Write down a row of the population; gives the diary, which may have moved."""
+    changes, vertices, counts = diary
+    n, m, size = counts[0], counts[1], members.sizes[row]
+    if n == changes.shape[0]:
+        more = np.empty((2 * n, 6), dtype=np.int64)
+        more[:n] = changes
+        changes = more
+    if m + size > vertices.shape[0]:
+        further = np.empty((2 * (m + size), 2), dtype=np.int32)
+        further[:m] = vertices[:m]
+        vertices = further
+    vertices[m : m + size] = members.points[row, :size]
+    counts[0], counts[1] = n + 1, m + size
+    changes[n, EPOCH], changes[n, ROW], changes[n, OPERATOR] = epoch, row, operator
+    changes[n, GAIN], changes[n, TOTAL], changes[n, END] = gain, members.totals[row], m + size
+    return Diary(changes, vertices, counts)
+
+
+@kernel
+def length_of(points: NDArray[np.int32], size: int) -> int:
+    """Give how many fields the rays between so many vertices enter."""
+    length = np.int64(0)
+    for k in range(1, size):
+        dx, dy = points[k, 0] - points[k - 1, 0], points[k, 1] - points[k - 1, 1]
+        length += max(abs(dx), abs(dy))
+    return length
+
+
+@kernel
+def same_side(
+    table: NDArray[np.int32],
+    first: NDArray[np.int32],
+    first_size: int,
+    second: NDArray[np.int32],
+    second_size: int,
+    rule: int,
+) -> bool:
+    """Tell whether two polygons pass obstacles on the same sides, as far as some rays can see.
+
+    Parameters
+    ----------
+    table : (rows, cols) int32
+        `GridMap.table`.
+    first, second : (n, 2) int32
+        Vertices of polygons with the same ends.
+    first_size, second_size : int
+        How many.
+    rule : int
+        Corner-cutting rule.
+
+    Returns
+    -------
+    bool
+        True if the ray is free from one polygon to the other at `RUNGS` places, each after the same
+        share of both. (Two of the same homotopy may be told apart where a bend hides one from the
+        other; an obstacle that lies between two rays is overlooked.)
+    """
+    length, other_length = length_of(first, first_size), length_of(second, second_size)
+    i, j = 0, 0
+    passed, other_passed = np.int64(0), np.int64(0)
+    for rung in range(1, RUNGS):
+        i, passed, x, y = after(first, i, passed, length * rung // RUNGS)
+        j, other_passed, u, v = after(second, j, other_passed, other_length * rung // RUNGS)
+        blocked, _ = ray(table, x, y, u, v, rule)
+        if blocked:
+            return False
+    return True
+
+
+@kernel(inner=True)
+def after(points: NDArray[np.int32], i: int, passed: int, fields: int) -> tuple[int, int, int, int]:
+    """Go on along a polygon, from vertex i before which some fields were passed, to a field.
+
+    Gives the last vertex before it, the fields passed up to that one, and the field.
+    """
+    while True:
+        x, y = np.int64(points[i, 0]), np.int64(points[i, 1])
+        u, v = np.int64(points[i + 1, 0]), np.int64(points[i + 1, 1])
+        steps = max(abs(u - x), abs(v - y))
+        if passed + steps >= fields:
+            x, y = field_at(x, y, u, v, fields - passed)
+            return i, passed, x, y
+        passed += steps
+        i += 1

@@ -1,0 +1,224 @@
+"""The memetic planner: walls lead to a first path, a genetic algorithm crosses and mutates it.
+
+It plans on every map, weighted or not, by every corner-cutting rule; finds a path wherever there
+is one, and proves it where there is none. docs/memetic.md tells the algorithm.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property, partial
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gapath.errors import Checks
+from gapath.grid import Table
+from gapath.history.evolution import Evolution, Population
+from gapath.kernels.memetic import account
+from gapath.kernels.memetic.account import (
+    BEST,
+    CHANGES,
+    EPOCHS,
+    EVALUATIONS,
+    INDIVIDUAL,
+    LOWER,
+    NUMBERS,
+    SHARES,
+    STATUS,
+    UNIT,
+)
+from gapath.kernels.memetic.evolution import evolve
+from gapath.kernels.memetic.polygon import fields_of
+from gapath.kernels.memetic.population import END, EPOCH, GAIN, OPERATOR, ROW, TOTAL
+from gapath.kernels.memetic.steps import X_BITS, X_MASK
+from gapath.kernels.rng import Stream, probability_threshold
+from gapath.kernels.units import SCALE
+from gapath.planning.path import corners
+from gapath.problem import CornerCutting, Plan, PlanStatus, Query
+
+_HANDS = {"left": 1, "right": 2, "both": 3}
+
+NAMES = ("wall following", "loops cut", "looks aside", "pulling", "coarse map", "newcomer",
+         "crossover", "reroute", "shortcut", "move", "cut", "insert")  # fmt: skip
+"""What finds a path and makes it cheaper (`gapath.kernels.memetic.account`)."""
+
+_UNKNOWN = np.empty(0, dtype=np.uint32)
+
+
+@dataclass(frozen=True)
+class Planner:
+    """The memetic planner; ``conf/planner/memetic.yaml`` says what its values are for.
+
+    Parameters
+    ----------
+    population : int
+        Individuals, 1 to 8; a map that has no ways round its obstacles leaves fewer.
+    hands : str
+        "both", "left" or "right": hands that follow walls.
+    effort : float
+        What newcomers, crossovers and mutations may read, times the fields of the first path.
+    tolerance : float
+        Stop at a path that costs at most 1 + tolerance times the least that any path can.
+    crossover_probability : float
+        Of an evaluation; the others mutate.
+    reroute_probability : float
+        Of a mutation, where the path pays more than the least weight somewhere; the others change
+        vertices. Elsewhere vertices cannot gain, and each mutation reroutes.
+    """
+
+    population: int
+    hands: str
+    effort: float
+    tolerance: float
+    crossover_probability: float
+    reroute_probability: float
+
+    exact = True
+    minimises = "weights"
+
+    def __post_init__(self) -> None:
+        check = Checks(self, "planner")
+        check.whole("population", 1, 8)
+        check("hands", self.hands in _HANDS, f"one of {', '.join(_HANDS)}")
+        check("effort", 0 <= self.effort <= 10**6, "a number from 0 to 1000000")
+        check("tolerance", 0 <= self.tolerance <= 1, "a number in [0, 1]")
+        for name in ("crossover_probability", "reroute_probability"):
+            check(name, 0 <= getattr(self, name) <= 1, "a number in [0, 1]")
+
+    @cached_property
+    def kernel_settings(self) -> NDArray[np.int64]:
+        """The settings as the kernel takes them, (6,) `gapath.kernels.memetic.account`."""
+        settings = np.empty(6, dtype=np.int64)
+        settings[account.POPULATION] = self.population
+        settings[account.HANDS] = _HANDS[self.hands]
+        settings[account.EFFORT] = round(self.effort * UNIT)
+        settings[account.TOLERANCE] = round(self.tolerance * UNIT)
+        for place, probability in (
+            (account.CROSSOVER_THRESHOLD, self.crossover_probability),
+            (account.REROUTE_THRESHOLD, self.reroute_probability),
+        ):
+            settings[place] = probability_threshold(probability)
+        return settings
+
+    def plan(self, problem: Query, stream: Stream) -> Plan:
+        """Run the memetic algorithm once.
+
+        Parameters
+        ----------
+        problem : Query
+            Start and target on a known map.
+        stream : (4,) uint64
+            A random stream, advanced in place.
+
+        Returns
+        -------
+        Plan
+            OPTIMAL if its path costs the least that any path can, else FOUND; INFEASIBLE, proved,
+            where there is none.
+        """
+        grid, rule = problem.map, problem.corner_cutting
+        least = grid.least_weight(problem.start, problem.target)
+        table, settings = grid.table, self.kernel_settings
+        told, path = evolve(
+            table, *problem.start, *problem.target, int(rule), least, settings, _UNKNOWN, stream
+        )
+        if told[STATUS] < 0:
+            return Plan(PlanStatus.INFEASIBLE)
+        x, y = problem.start
+        start = int(table[y, x])
+        # a robot's table changes; only where no diagonal step is allowed it is asked again
+        result = _Result(told, start, table.copy() if rule is _STRAIGHT else None)
+        total, lower, epochs, evaluations = told[_TOLD].tolist()
+        return Plan(
+            PlanStatus.OPTIMAL if total <= lower else PlanStatus.FOUND,
+            path,
+            (total + start) / SCALE,
+            epochs=epochs,
+            evaluations=evaluations,
+            trace=partial(_evolution, result),
+            lines=partial(_lines, result),
+        )
+
+
+_STRAIGHT = CornerCutting.NO_DIAGONALS
+_TOLD = [BEST, LOWER, EPOCHS, EVALUATIONS]
+
+
+class _Result(NamedTuple):
+    """What the kernel told."""
+
+    told: NDArray[np.int64]
+    start: int
+    """Weight of the start, in units of 1 / SCALE."""
+    table: Table | None
+    """The map, where rays go by way of fields between two vertices."""
+
+    @property
+    def changes(self) -> NDArray[np.int64]:
+        """Rows of the diary, (n, 6)."""
+        end = NUMBERS + 6 * int(self.told[CHANGES])
+        return self.told[NUMBERS:end].reshape(-1, 6)
+
+    def polygon(self, change: int) -> NDArray[np.int32]:
+        """Give the vertices (n, 2) that straight lines join after a change."""
+        ends = self.changes[:, END]
+        packed = self.told[NUMBERS + self.changes.size :]
+        packed = packed[ends[change - 1] if change else 0 : ends[change]]
+        polygon = np.stack([packed & X_MASK, packed >> X_BITS], axis=1).astype(np.int32)
+        if self.table is None:
+            return polygon
+        count, path = fields_of(
+            self.table, polygon, len(polygon), False, int(_STRAIGHT), np.empty(0, dtype=np.uint32)
+        )
+        path = path[:count]
+        return corners(np.stack([path & X_MASK, path >> X_BITS], axis=1).astype(np.int32))
+
+
+def _lines(result: _Result) -> NDArray[np.int32]:
+    """Give the best polygon."""
+    own = np.flatnonzero(result.changes[:, ROW] == result.told[INDIVIDUAL])
+    return result.polygon(int(own[-1]))
+
+
+def _evolution(result: _Result) -> Evolution:
+    """Tell the history."""
+    changes, told = result.changes, result.told
+    polygons = [result.polygon(i) for i in range(len(changes))]
+    costs = (changes[:, TOTAL] + result.start) / SCALE
+    shares = told[SHARES:NUMBERS].copy()
+    shares[0] += result.start
+    population = Population(
+        epochs=changes[:, EPOCH].astype(np.int32),
+        individuals=changes[:, ROW].astype(np.int32),
+        operators=changes[:, OPERATOR].astype(np.int32),
+        gains=changes[:, GAIN] / SCALE,
+        costs=costs,
+        ends=np.cumsum([len(polygon) for polygon in polygons]).astype(np.int32),
+        vertices=np.concatenate(polygons),
+        names=NAMES,
+        shares=tuple((shares / SCALE).tolist()),
+    )
+    standing = population.standing(int(told[EPOCHS]))
+    now = np.where(standing < 0, np.inf, costs[standing])
+    best = standing[np.arange(len(standing)), now.argmin(axis=1)].tolist()
+    # the last one is the path's
+    own = np.flatnonzero(changes[:, ROW] == told[INDIVIDUAL])
+    best[-1] = int(own[-1])
+    way_points = padded([polygons[i] for i in best])
+    return Evolution(
+        best=now.min(axis=1),
+        mean=np.nanmean(np.where(standing < 0, np.nan, now), axis=1),
+        chromosomes=way_points.reshape(len(best), -1),
+        way_points=way_points,
+        genotype="polygon",
+        population=population,
+    )
+
+
+def padded(polygons: list[NDArray[np.int32]]) -> NDArray[np.int32]:
+    """Give polygons as one array (n, most vertices, 2), their last vertices repeated."""
+    most = max(map(len, polygons))
+    rows = np.empty((len(polygons), most, 2), dtype=np.int32)
+    for row, polygon in zip(rows, polygons, strict=True):
+        row[: len(polygon)], row[len(polygon) :] = polygon, polygon[-1]
+    return rows
