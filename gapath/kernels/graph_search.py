@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.kernels.jit import kernel
-from gapath.kernels.lines import cuts_corner
+from gapath.kernels.lines import too_narrow
 from gapath.kernels.units import ALLOW, OBSTACLE
 
 FIELD_BITS = 21
@@ -238,8 +238,7 @@ def search(
     items[1, PRIORITY], items[1, LINK] = last, begin << LINK_BITS
     mark(buckets, np.uint64(0), last)
     buckets.firsts[0] = 1
-    states[begin] = 1
-    expansions[0] = 0
+    states[begin], expansions[0] = 1, 0
     while True:
         bucket = lowest(buckets)
         if bucket >= DIGITS:
@@ -254,8 +253,7 @@ def search(
         else:
             buckets.firsts[bucket] = link & NEXT
         place = link >> LINK_BITS
-        items[item, LINK] = spare
-        spare = item
+        items[item, LINK], spare = spare, item
         state = states[place]
         if place == end:
             return state >> (STATE_BITS + bits)
@@ -286,8 +284,11 @@ def search(
             weight = np.int64(weights[neighbour])
             if known < 0 or weight >= OBSTACLE:
                 continue
-            if rule != ALLOW and cuts_corner(table, x0, y0, x1, y1, rule):
-                continue
+            if rule != ALLOW and step >= 4:
+                walls = np.int64(weights[np.uint64(y0 * cols + x1)] >= OBSTACLE)
+                walls += weights[np.uint64(y1 * cols + x0)] >= OBSTACLE
+                if too_narrow(walls, rule):
+                    continue
             weight = (weight << bits) + one
             if by_length:
                 weight = STRAIGHT if step < 4 else DIAGONAL

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from gapath.kernels.jit import kernel
 from gapath.kernels.raster import HALF, SHIFT, slope
-from gapath.kernels.units import ALLOW, FORBID, NO_DIAGONALS, OBSTACLE, OBSTACLE_BITS
+from gapath.kernels.units import ALLOW, FORBID, NO_DIAGONALS, OBSTACLE, OBSTACLE_BITS, ONE_SIDE
 
 WEIGHT_MASK = OBSTACLE - 1
 
@@ -76,9 +76,30 @@ def cuts_corner(table: NDArray[np.int32], x0: int, y0: int, x1: int, y1: int, ru
         return False
     if rule == NO_DIAGONALS:
         return True
-    first = entry(table, x1, y0) >= OBSTACLE
-    second = entry(table, x0, y1) >= OBSTACLE
-    return (first and second) or (rule == FORBID and (first or second))
+    walls = (entry(table, x1, y0) >= OBSTACLE) + (entry(table, x0, y1) >= OBSTACLE)
+    return too_narrow(walls, rule)
+
+
+@kernel(inner=True)
+def too_narrow(walls: int, rule: int) -> bool:
+    """Tell whether a diagonal step breaks the corner-cutting rule.
+
+    A kernel that asks often counts the obstacles itself: to call one with an array costs it more
+    than all the rest of the step.
+
+    Parameters
+    ----------
+    walls : int
+        Obstacles among the two fields that both ends of the step touch, 0 to 2.
+    rule : int
+        ALLOW, ONE_SIDE, FORBID or NO_DIAGONALS.
+
+    Returns
+    -------
+    bool
+        True if the step is forbidden.
+    """
+    return rule == NO_DIAGONALS or walls > (0 if rule == FORBID else 1 if rule == ONE_SIDE else 2)
 
 
 ENDS, OUTSIDE, BLOCKED, APART, CORNER = range(-1, -6, -1)
@@ -232,11 +253,20 @@ def corners_cut(
     int
         Number of forbidden steps.
     """
+    rows, cols = table.shape
     count = 0
     for _ in range(n):
         x0, y0 = x >> SHIFT, y >> SHIFT
         x += slope_x
         y += slope_y
-        if cuts_corner(table, x0, y0, x >> SHIFT, y >> SHIFT, rule):
+        x1, y1 = x >> SHIFT, y >> SHIFT
+        if x0 == x1 or y0 == y1:
+            continue
+        walls = 2
+        if 0 <= x1 < cols and 0 <= y0 < rows:
+            walls -= table[np.uint64(y0), np.uint64(x1)] < OBSTACLE
+        if 0 <= x0 < cols and 0 <= y1 < rows:
+            walls -= table[np.uint64(y1), np.uint64(x0)] < OBSTACLE
+        if too_narrow(walls, rule):
             count += 1
     return count
