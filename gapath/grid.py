@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import InputError, require
-from gapath.kernels.table import fill_parts, fill_table
+from gapath.kernels.table import fill_parts, fill_table, least_three
 from gapath.kernels.units import ALLOW
 from gapath.pictures.shown import Shown, axes_for
 
@@ -177,21 +177,26 @@ class GridMap(Shown):
         """True where a field cannot be passed, (rows, cols)."""
         return np.equal(self.weights, 1.0)
 
-    @cached_property
-    def _lightest(self) -> list[tuple[int, int]]:
-        """Table entry and flat index of the three lightest fields, the lightest first."""
-        flat = self.table.flatten()
-        lightest = []
-        for _ in range(min(3, flat.size)):
-            i = int(flat.argmin())
-            lightest.append((int(flat[i]), i))
-            flat[i] = np.iinfo(flat.dtype).max
-        return lightest
-
     def least_weight(self, start: Field, target: Field) -> int:
         """Give the least table entry of any field but start and target (0 if none is left)."""
         ends = (start[1] * self.cols + start[0], target[1] * self.cols + target[0])
         return next((entry for entry, i in self._lightest if i not in ends), 0)
+
+    def is_even(self, start: Field, target: Field) -> bool:
+        """Tell whether all free fields but start and target weigh the same."""
+        if self._lightest[0][0] == -self._heaviest[0][0]:
+            return True  # they do, too
+        ends = (start[1] * self.cols + start[0], target[1] * self.cols + target[0])
+        most = next((-entry for entry, i in self._heaviest if i not in ends), 0)
+        return abs(most) == self.least_weight(start, target)
+
+    @cached_property
+    def _lightest(self) -> list[tuple[int, int]]:
+        return least_three(self.table.ravel())
+
+    @cached_property
+    def _heaviest(self) -> list[tuple[int, int]]:  # obstacles come last here, too
+        return least_three(np.where(self.obstacles, self.table, -self.table).ravel())
 
     def joined(self, start: Field, target: Field, rule: int) -> bool:
         """Tell whether a path joins two free fields; what that takes is done once a map.
@@ -284,9 +289,8 @@ class GridMap(Shown):
     @cached_property
     def _metric(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Scale and offset of metres: half a field in from the left, y up from the bottom."""
-        x, y, yaw = self.origin
         offset = np.array([0.5, self.rows - 0.5]) * self.resolution
-        corner = np.array([x, y] if yaw == 0.0 else [0.0, 0.0])
+        corner = np.array(self.origin[:2] if self.origin[2] == 0.0 else (0.0, 0.0))
         return np.array([self.resolution, -self.resolution]), offset + corner
 
 

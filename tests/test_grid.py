@@ -6,6 +6,7 @@ import naive
 import numpy as np
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 from strategies import problems, weights
 
 from gapath.errors import InputError
@@ -54,6 +55,18 @@ def test_the_least_weight_leaves_out_start_and_target(values):
     start, target = (0, 0), (grid.cols - 1, grid.rows - 1)
     others = np.delete(grid.table.ravel(), [0, grid.table.size - 1])
     assert grid.least_weight(start, target) == others.min(initial=others[0])
+
+
+@given(weights(6), st.sampled_from([None, 0.5]))
+def test_a_map_is_even_if_no_field_but_the_ends_weighs_more_or_less(values, floor):
+    if floor is not None:
+        values[values < 1] = floor
+        values[0, 0] = 0.25
+    grid = GridMap("random", values)
+    ends = (0, 0), (grid.cols - 1, grid.rows - 1)
+    others = np.delete(values.ravel(), [0, values.size - 1])
+    assert grid.is_even(*ends) == (len(set(others[others < 1])) <= 1)
+    assert grid.is_even(ends[1], ends[1]) == (len(set(values.ravel()[:-1]) - {1.0}) <= 1)
 
 
 def test_a_map_cannot_be_changed_behind_its_back():

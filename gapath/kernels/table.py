@@ -1,4 +1,4 @@
-"""What kernels read of a map: its weights as whole numbers, obstacles apart; which fields join."""
+"""What kernels read of a map: weights as whole numbers, obstacles apart; which fields join."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,49 @@ def fill_table(weights: NDArray[np.float64], table: NDArray[np.int32]) -> None:
     for i in range(weights.shape[0]):
         entry = np.int32(np.floor(weights[i] * SCALE + 0.5))
         table[i] = np.int32(OBSTACLE) if weights[i] == 1.0 else entry
+
+
+def least_three(numbers: NDArray[np.int32]) -> list[tuple[int, int]]:
+    """Find the least three numbers of an array; it is done once a map, and not worth compiling.
+
+    Parameters
+    ----------
+    numbers : (n,) int32
+        Of a map.
+
+    Returns
+    -------
+    list of (int, int)
+        Number and index, the least first, of equal ones the first; fewer where there are fewer.
+    """
+    rest, least = numbers.copy(), []
+    for _ in range(min(3, rest.size)):
+        i = int(rest.argmin())
+        least.append((int(rest[i]), i))
+        rest[i] = np.iinfo(rest.dtype).max
+    return least
+
+
+@kernel
+def weights_of(table: NDArray[np.int32], path: NDArray[np.int32]) -> int:
+    """Sum up the entries of a path's fields.
+
+    Parameters
+    ----------
+    table : (rows, cols) int32
+        `GridMap.table`.
+    path : (n, 2) int32
+        Free fields (x, y).
+
+    Returns
+    -------
+    int
+        KG18 eq. (5) in units of 1 / SCALE.
+    """
+    total = np.int64(0)
+    for i in range(path.shape[0]):
+        total += table[path[i, 1], path[i, 0]]
+    return total
 
 
 @kernel

@@ -7,6 +7,7 @@ fields cost nothing, all do.
 import numpy as np
 
 from gapath.kernels.graph_search import BY_LENGTH, FIELD_BITS, NO_PATH, TOO_LONG, path_to, search
+from gapath.kernels.table import weights_of
 from gapath.kernels.units import SCALE
 from gapath.problem import Plan, PlanStatus, Query
 
@@ -44,8 +45,5 @@ def shortest_path(problem: Query, informed: bool = True, by_length: bool = False
     if cost == NO_PATH:
         return Plan(PlanStatus.INFEASIBLE, expansions=int(expansions[0]))
     path = path_to(states, table.shape[1], u, v)
-    if by_length:
-        total = int(table[path[:, 1], path[:, 0]].sum(dtype=np.int64))
-    else:
-        total = int(cost) + int(table[y, x])
+    total = weights_of(table, path) if by_length else int(cost) + int(table[y, x])
     return Plan(PlanStatus.FOUND, path, total / SCALE, expansions=int(expansions[0]))

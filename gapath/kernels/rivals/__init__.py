@@ -1,0 +1,1 @@
+"""The kernels of other families' planners: jump points, any angle, random trees."""
