@@ -30,6 +30,13 @@ _PLACES = (
     "kg18.sweep",
     "kg18.logging",
     "kg18.drives",
+    "field.field_movingai",
+    "field.field_test4",
+    "field.field_large",
+    "field.field_drives",
+    "field.field_calls",
+    "field.field_found",
+    "field.field_ablation",
     "asking",
     "cold_start",
 )

@@ -51,6 +51,75 @@ def skipped(row: Row) -> str | None:
 
 CLASS_1 = {"class": "kg18_test1"}  # no keyword argument can be called class
 
+GA, QUALITY = {"planner": "memetic"}, {"planner": "memetic_quality"}
+LARGE_MAPS = "256 x 256 and more"
+
+
+def large(column_name: str, terrain: bool) -> Take:
+    """Take a column of the genetic planner's rows of `field_large`, of weighted maps or others."""
+    take = column(column_name, **GA)
+    return lambda rows: take([row for row in rows if (row["class"] == "field_terrain") == terrain])
+
+
+FIELD = (
+    Target("every problem that can be solved: found by memetic", "field_found", ">=", 100,
+           column("found %", **GA), "%"),
+    Target("of these and of those that cannot be: false answers", "field_found", "<=", 0,
+           column("false", **GA)),
+    Target("test map 4, 1000 seeds: found by memetic", "field_test4", ">=", 100,
+           column("found %", **GA), "%"),
+    Target("test map 4: cost, memetic / A*", "field_test4", "<=", 1.05,
+           column("cost ratio", **GA)),
+    Target("test map 4: cost, memetic_quality / A*", "field_test4", "<=", 1.002,
+           column("cost ratio", **QUALITY)),
+    Target("each MovingAI map: A* / memetic", "field_movingai", ">=", 1,
+           column("A* / planner", **GA)),
+    Target("all MovingAI maps: A* / memetic", "field_movingai", ">=", 10,
+           column("A* / planner", **GA, map="all")),
+    Target("each MovingAI map, kernels alone: A* / memetic", "field_movingai", ">=", 1,
+           column("A* / kernel", **GA)),
+    Target("all MovingAI maps: cost, memetic / A*, mean", "field_movingai", "<=", 1.008,
+           column("cost ratio", **GA, map="all")),
+    Target("the same, 99th percentile", "field_movingai", "<=", 1.10,
+           column("ratio 99 %", **GA, map="all")),
+    Target("MovingAI maps of 256 x 256 and more: A* / memetic_quality", "field_movingai", ">=", 2,
+           column("A* / planner", **QUALITY, map=LARGE_MAPS)),
+    Target("these: cost, memetic_quality / A*, mean", "field_movingai", "<=", 1.003,
+           column("cost ratio", **QUALITY, map=LARGE_MAPS)),
+    Target("these: cost, memetic_quality / A*, 99th percentile", "field_movingai", "<=", 1.05,
+           column("ratio 99 %", **QUALITY, map=LARGE_MAPS)),
+    Target("each class of large maps: A* / memetic", "field_large", ">=", 20,
+           column("A* / planner", **GA)),
+    Target("each class of large maps, at the worst: A* / memetic", "field_large", ">=", 0.8,
+           column("A* / planner", **GA)),
+    Target("each class of large uniform maps: cost, memetic / A*", "field_large", "<=", 1.01,
+           large("cost ratio", terrain=False)),
+    Target("large weighted maps: cost, memetic / A*", "field_large", "<=", 1.03,
+           large("cost ratio", terrain=True)),
+    Target("rooms of 512 x 512: jump points / memetic", "field_large", ">=", 1,
+           column("jps / planner", **GA, ends="random")),
+    Target("streets of 256 x 256: jump points / memetic", "field_movingai", ">=", 1,
+           column("jps / planner", **GA, map="Berlin_1_256")),
+    Target("drives with memetic: reached", "field_drives", ">=", 100,
+           column("reached %", navigator="memetic"), "%"),
+    Target("drives on KG18's four maps: steps, memetic / repeated A*", "field_drives", "<=", 1,
+           column("steps / replan_astar", navigator="memetic", range=4, fields="100 x 50")),
+    *(Target(f"drives on {name}: time, memetic / repeated A*", "field_drives", "<=", limit,
+             column("time / replan_astar", navigator="memetic", map=name))
+      for name, limit in (("kg18_map1", 2), ("kg18_map2", 2), ("kg18_map3", 1), ("kg18_map4", 1))),
+    Target("drives on 1000 x 500, range 8: time, memetic / repeated A*", "field_drives", "<=", 0.2,
+           column("time / replan_astar", navigator="memetic", range=8)),
+    Target("drives on 1000 x 500, range 8: time, memetic / D* Lite", "field_drives", "<=", 0.5,
+           column("time / dstar_lite", navigator="memetic", range=8)),
+    Target("drives on 1000 x 500, range 8: steps, memetic / the better", "field_drives", "<=", 1.05,
+           column("steps / the better", navigator="memetic", range=8)),
+    Target("gapath.plan with memetic beyond its kernel", "field_calls", "<=", 25,
+           column("gapath.plan - kernel us", **GA, work="a call"), "us"),
+    Target("memory of memetic on noise", "field_calls", "<=", 40,
+           column("bytes a field", **GA, work="memory"), "bytes a field"),
+)  # fmt: skip
+"""Of a genetic planner of gapath's own, beside A* and jump point search."""
+
 TARGETS = (
     Target("100 000 chromosomes evaluated: gapath / C, AVX-512 gathers", "fitness", "<=", 1.1,
            column("gapath / rival", rival="C, AVX-512 gathers")),
@@ -124,6 +193,7 @@ TARGETS = (
            column("rival / gapath", work="image to path", rival="the paper")),
     Target("a generation of M22: geneticalgorithm2 / gapath", "visibility", ">=", 50,
            column("rival / gapath", work="a generation")),
+    *FIELD,
 )  # fmt: skip
 
 

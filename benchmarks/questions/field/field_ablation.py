@@ -1,0 +1,57 @@
+"""What each part of the genetic planner is worth: the whole, and without one part at a time.
+
+On evenly spread problems of MovingAI's maps and on 200 seeds of KG18's fourth known map; times,
+ratios and costs as of `field_movingai`. "excess" is by how much the mean cost ratio is above 1,
+over the whole planner's: 2 says twice as much.
+"""
+
+from typing import Any
+
+from benchmarks.field import (
+    NO_DATA,
+    compared,
+    contenders,
+    evenly,
+    real_maps,
+    scenario_problems,
+    scenarios,
+    summary,
+)
+from benchmarks.measure import Row, make_problem
+from gapath.problem import CornerCutting, Problem
+
+PLANNER = "memetic"
+WHOLE = "whole"
+PARTS: dict[str, dict[str, Any]] = {
+    WHOLE: {},
+    "without GA": {"evaluations": 0},
+    "without crossover": {"crossover_probability": 0.0},
+    "one individual": {"population": 1},
+}
+"""Settings that leave a part out."""
+PROBLEMS, SEEDS = 40, 200
+"""Problems of each map, and seeds."""
+
+
+def measure(quick: bool) -> list[Row]:
+    rows = _of_place("kg18_test4", [make_problem("kg18_test4")] * (2 if quick else SEEDS))
+    folder = real_maps()
+    if folder is None:
+        return [*rows, {"maps": "MovingAI", "problems": NO_DATA}]
+    posed: list[Problem] = []
+    for path, problems in scenarios(folder / "movingai"):
+        those = scenario_problems(path, problems, CornerCutting.ALLOW)
+        posed += evenly(those, 1 if quick else PROBLEMS)
+    return rows + _of_place("MovingAI", posed)
+
+
+def _of_place(place: str, problems: list[Problem]) -> list[Row]:
+    made = contenders(PARTS, {part: {"base": PLANNER, **PARTS[part]} for part in PARTS})
+    rows: list[Row] = []
+    for part, heats in compared(problems, made):
+        row: Row = {"maps": place, "planner": PLANNER, "part": part}
+        rows.append(row | ({"problems": heats} if isinstance(heats, str) else summary(part, heats)))
+        if "cost ratio" in rows[0] and rows[0]["cost ratio"] > 1 and "cost ratio" in rows[-1]:
+            excess = (rows[-1]["cost ratio"] - 1) / (rows[0]["cost ratio"] - 1)
+            rows[-1]["excess"] = excess
+    return rows
