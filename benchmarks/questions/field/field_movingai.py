@@ -28,7 +28,7 @@ from gapath.problem import CornerCutting
 
 PLANNERS = ("memetic", "memetic_quality", "jps")
 RULES = (CornerCutting.ALLOW, CornerCutting.FORBID)
-PROBLEMS = 150
+PROBLEMS = 100
 """Of a map, at most, for each rule."""
 LARGE = 256 * 256
 
