@@ -32,7 +32,7 @@ INSTANCES, TRIALS, RANGE = 30, 4, 4
 LARGE = ("field_rooms", "field_clutter", "field_map4")
 LARGE_SIZE = {"width": 1000, "height": 500}
 LARGE_NAVIGATORS = ("memetic", REPEATED, INCREMENTAL)
-LARGE_INSTANCES = 1
+LARGE_INSTANCES = 3
 LARGE_RANGES = (4, 8, 40)
 
 
