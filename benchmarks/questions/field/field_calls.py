@@ -5,8 +5,8 @@ where it can be called by itself; `Planner.plan`, which makes a plan of it; and 
 user calls it by the planner's name.
 
 Memory: the peak of a process while it plans for the first time on a generated map of noise of 2000
-x 1000 fields, above what it held with the map read, over the fields (Linux only; kernels are
-compiled and have run on a small map). The path's own fields count.
+x 1000 fields, diagonally as `field_large` does, above what it held with the map read, over the
+fields (Linux only; kernels are compiled and have run on a small map). The path's own fields count.
 """
 
 import os
@@ -18,6 +18,7 @@ from pathlib import Path
 import gapath
 from benchmarks.field import KERNELS, contenders, least_times
 from benchmarks.measure import Calls, Row, make_problem, quartiles
+from benchmarks.questions.field.field_large import diagonal
 from gapath.kernels.rng import stream
 from gapath.planning.planner import Planner
 from gapath.problem import Problem
@@ -31,23 +32,20 @@ import sys
 from pathlib import Path
 import gapath
 
-planner = sys.argv[1]
+planner, *ends = sys.argv[1], *map(int, sys.argv[2:])
+start, target = ends[:2], ends[2:]
 
 def held(name):
     text = Path("/proc/self/status").read_text()
     return 1024 * int(text.partition(name + ":")[2].split()[0])
 
-def noise(**size):
-    grid = gapath.load_map("field_noise", **size)
-    grid.joined(grid.start, grid.target, 0)
-    gapath.plan(grid, grid.start, grid.start, planner="astar")  # what a map makes once is there
-    return grid
-
-gapath.plan(noise(width=100, height=50), planner=planner)
-grid = noise()
+gapath.plan(gapath.load_map("field_noise", width=100, height=50), planner=planner)
+grid = gapath.load_map("field_noise")
+grid.joined(start, target, 0)
+gapath.plan(grid, start, start, planner="astar")  # what a map makes once is there
 Path("/proc/self/clear_refs").write_text("5")  # the peak begins anew
 before = held("VmRSS")
-plan = gapath.plan(grid, planner=planner)
+plan = gapath.plan(grid, start, target, planner=planner)
 print((held("VmHWM") - before) / grid.weights.size, int(plan.feasible))
 """
 
@@ -72,12 +70,14 @@ def time_calls(problem: Problem, name: str, planner: Planner, rounds: int) -> Ro
 
 def memory(name: str) -> Row:
     """Measure what a planner holds, in a process of its own."""
+    problem = diagonal(gapath.load_map(NOISE))
     if not Path("/proc/self/clear_refs").exists():
         return {"bytes a field": "skipped: this system has no /proc/self/clear_refs"}
     # what is freed goes back to the system, so nothing is hidden in what was held before
     environment = {**os.environ, "MALLOC_MMAP_THRESHOLD_": "65536", "MALLOC_TRIM_THRESHOLD_": "0"}
-    done = subprocess.run([sys.executable, "-c", _ALONE, name], check=True, capture_output=True,
-                          text=True, env=environment)  # fmt: skip
+    ends = map(str, (*problem.start, *problem.target))
+    done = subprocess.run([sys.executable, "-c", _ALONE, name, *ends], check=True,
+                          capture_output=True, text=True, env=environment)  # fmt: skip
     held, found = done.stdout.split()
     return {"found": int(found), "bytes a field": float(held)}
 

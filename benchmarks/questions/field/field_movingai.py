@@ -1,10 +1,11 @@
 """MovingAI's maps: who finds a path, how dear it is, and how fast.
 
 Evenly spread problems of each map's `.scen` file, with corners cut and without. Every path is
-checked, and its cost held against A*'s, before any time is taken. Times are a thread's own, the
-least of three of each call, all planners in turn: "ms" are totals of `Planner.plan`, "kernel ms"
-of the kernels alone, where they can be called. A ratio "A* / ..." above 1 says that A* takes
-longer; "a problem" is the median of the problems' own ratios. Costs are KG18 eq. (5), over A*'s.
+checked, and its cost held against A*'s, before any time is taken. "dearer" is by how much it costs
+more than A*'s, KG18 eq. (5), in per cent: mean, percentiles and most. Times are a thread's own, the
+least of three of each call, all planners in turn: "ms" are totals of `Planner.plan`, "kernel ms" of
+the kernels alone, where they can be called. A ratio "A* / ..." above 1 says that A* takes longer;
+"a problem" is the median of the problems' own ratios.
 
 Maps: Moving AI Lab (Sturtevant 2012), ODC-BY.
 """

@@ -1,6 +1,6 @@
 """KG18's fourth known map, which no GA of the paper solves: how many seeds do, and how well.
 
-Costs over A*'s; times of `Planner.plan`, a thread's own, the least of three, in turn with A*'s.
+Times and costs as of `field_movingai`.
 """
 
 from benchmarks.field import compared, contenders, summary
