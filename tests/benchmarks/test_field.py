@@ -217,7 +217,7 @@ def test_without_real_maps_the_reason_is_stated(tmp_path, monkeypatch, stand_ins
     reasons = {row["source"]: row["problems"] for row in rows if row["planner"] == "astar"}
     assert {reasons[name] for name in field_found.REAL} == {field.NO_DATA}
     assert reasons["random maps"] == 4
-    monkeypatch.setattr(field_ablation, "PLANNER", "nobody")
+    monkeypatch.setattr(field_ablation, "PLANNERS", ("nobody",))
     assert field_ablation.measure(quick=True)[-1]["problems"] == field.NO_DATA
 
 
@@ -270,7 +270,7 @@ def test_calls_are_timed_beyond_their_kernel(stand_ins):
 
 
 def test_parts_are_left_out_by_settings(monkeypatch, scenario):
-    monkeypatch.setattr(field_ablation, "PLANNER", "ga3")
+    monkeypatch.setattr(field_ablation, "PLANNERS", ("ga3",))
     monkeypatch.setattr(field_ablation, "PARTS", {"whole": {}, "one epoch": {"max_epochs": 1}})
     rows = field_ablation.measure(quick=True)
     assert [(row["maps"], row["part"]) for row in rows] == [

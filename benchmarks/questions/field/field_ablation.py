@@ -1,4 +1,4 @@
-"""What each part of the genetic planner is worth: the whole, and without one part at a time.
+"""What each part of the genetic planner is worth: the whole, and without one of them at a time.
 
 On evenly spread problems of MovingAI's maps and on 200 seeds of KG18's fourth known map; times and
 costs as of `field_movingai`. "dearer / whole" is the mean of "dearer" over the whole planner's.
@@ -19,10 +19,9 @@ from benchmarks.field import (
 from benchmarks.measure import Row, make_problem
 from gapath.problem import CornerCutting, Problem
 
-PLANNER = "memetic"
-WHOLE = "whole"
+PLANNERS = ("memetic", "memetic_quality")
 PARTS: dict[str, dict[str, Any]] = {
-    WHOLE: {},
+    "whole": {},
     "without GA": {"effort": 0.0},
     "without crossover": {"crossover_probability": 0.0},
     "without reroutes": {"reroute_probability": 0.0},
@@ -47,10 +46,14 @@ def measure(quick: bool) -> list[Row]:
 
 
 def _of_place(place: str, problems: list[Problem]) -> list[Row]:
-    made = contenders(PARTS, {part: {"base": PLANNER, **PARTS[part]} for part in PARTS})
+    return [row for name in PLANNERS for row in _of_planner(place, name, problems)]
+
+
+def _of_planner(place: str, name: str, problems: list[Problem]) -> list[Row]:
+    made = contenders(PARTS, {part: {"base": name, **PARTS[part]} for part in PARTS})
     rows: list[Row] = []
     for part, heats in compared(problems, made):
-        row: Row = {"maps": place, "planner": PLANNER, "part": part}
+        row: Row = {"maps": place, "planner": name, "part": part}
         rows.append(row | ({"problems": heats} if isinstance(heats, str) else summary(part, heats)))
         whole = rows[0].get("dearer %")
         if whole and "dearer %" in rows[-1]:
