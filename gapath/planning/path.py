@@ -84,6 +84,25 @@ def heading_changes(path: NDArray[np.int32]) -> NDArray[np.int64]:
     return np.asarray(np.minimum(change, 8 - change))
 
 
+def turning(way_points: NDArray[np.int32]) -> NDArray[np.float64]:
+    """Give by how much the heading changes at each way point between the ends.
+
+    Parameters
+    ----------
+    way_points : (n, 2) int32
+        Fields (x, y), each another one than the one before; n >= 1.
+
+    Returns
+    -------
+    (max(n - 2, 0),) float64
+        In radians, 0 to pi.
+    """
+    steps = np.diff(way_points.astype(np.float64), axis=0)
+    before, after = steps[:-1], steps[1:]
+    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    return np.asarray(np.abs(np.arctan2(cross, (before * after).sum(axis=1))))
+
+
 def polyline_length(way_points: NDArray[np.int32]) -> float:
     """Measure the straight lines that join way points.
 

@@ -44,8 +44,19 @@ def test_straight_lines_are_measured_as_such():
     assert found["line_length"] == pytest.approx(math.sqrt(10) + math.sqrt(5))
 
 
+def test_the_angle_over_length_is_that_of_the_lines_where_there_are_any():
+    ends = np.array([(0, 0), (0, 0), (3, 1), (4, 3)], dtype=np.int32)
+    turn = math.atan2(2, 1) - math.atan2(1, 3)
+    found = measure(PATH, lambda: ends)
+    assert found["angle_over_length"] == pytest.approx(turn / (math.sqrt(10) + math.sqrt(5)))
+    plain = measure(PATH)
+    assert plain["angle_over_length"] == pytest.approx(plain["curvature"])
+    assert measure([(0, 0)])["angle_over_length"] == 0.0
+
+
 def test_turning_back_is_a_half_turn():
-    assert measure([(0, 0), (1, 0), (0, 0)])["curvature"] == math.pi / 2
+    found = measure([(0, 0), (1, 0), (0, 0)])
+    assert found["curvature"] == found["angle_over_length"] == math.pi / 2
 
 
 def test_a_path_of_one_field_is_measured():

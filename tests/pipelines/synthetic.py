@@ -51,6 +51,7 @@ def make_path(shift: int) -> np.ndarray:
 NOTHING: Mapping[str, Any] = {}
 METRICS = {
     "length": 25.0, "line_length": 24.5, "turns": 4, "clearance": 1.0, "curvature": 0.1,
+    "angle_over_length": 0.1,
 }  # fmt: skip
 
 
