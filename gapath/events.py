@@ -97,6 +97,29 @@ class TrialStarted:
 
 
 @dataclass(frozen=True, eq=False)
+class Posed:
+    """A trial has a start and a target of its own, of several on one map.
+
+    Parameters
+    ----------
+    step, trial, number : int
+        When, in which trial, and the number of the query among all that are listed.
+    start, target : (x, y)
+        Fields, which may be blocked.
+    optimal_path, optimal_cost
+        What the trial is held against, as of `RunStarted`.
+    """
+
+    step: int
+    trial: int
+    number: int
+    start: Field
+    target: Field
+    optimal_path: NDArray[np.int32] = field(repr=False)
+    optimal_cost: float
+
+
+@dataclass(frozen=True, eq=False)
 class Evolved:
     """A genetic algorithm ran; its epochs are the steps from this one on."""
 
@@ -286,6 +309,7 @@ class RunFinished:
 Event: TypeAlias = (
     RunStarted
     | TrialStarted
+    | Posed
     | Evolved
     | Surveyed
     | TrialFinished

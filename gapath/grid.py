@@ -199,22 +199,24 @@ class GridMap(Shown):
         return least_three(np.where(self.obstacles, self.table, -self.table).ravel())
 
     def joined(self, start: Field, target: Field, rule: int) -> bool:
-        """Tell whether a path joins two free fields; what that takes is done once a map.
+        """Tell whether a path joins two free fields (`parts`)."""
+        parts = self.parts(rule)
+        return bool(parts[start[1], start[0]] == parts[target[1], target[0]])
+
+    def parts(self, rule: int) -> NDArray[np.int32]:
+        """Tell which fields paths join; what that takes is done once a map.
 
         Parameters
         ----------
-        start, target : (x, y)
-            Free fields.
         rule : int
             Corner-cutting rule (`gapath.kernels.units`).
 
         Returns
         -------
-        bool
-            True if there is a path.
+        (rows, cols) int32
+            The number of the part that a field belongs to, from 1; 0 where an obstacle is.
         """
-        parts = self._parts_by_corners if rule == ALLOW else self._parts_by_sides
-        return bool(parts[start[1], start[0]] == parts[target[1], target[0]])
+        return self._parts_by_corners if rule == ALLOW else self._parts_by_sides
 
     @cached_property
     def _parts_by_corners(self) -> NDArray[np.int32]:

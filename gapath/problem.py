@@ -16,6 +16,7 @@ from gapath.history.evolution import Evolution
 from gapath.history.graph import Graph
 from gapath.kernels import units
 from gapath.pictures.shown import Shown, axes_for
+from gapath.scenario.listed import Queries
 
 if TYPE_CHECKING:
     from gapath.pictures.animation import Animation
@@ -84,6 +85,11 @@ class Problem:
         The rule for diagonal steps, the same for every planner.
     maps : mapping of str to GridMap
         What else a task read from files (`gapath.task.Task.read`): setting -> map.
+    published_length : float
+        Octile length of a shortest path, in fields, as the map's author gives it; NaN if nobody
+        does.
+    queries : Queries, optional
+        Of a run over several pairs of start and target: all of them, of which this is one.
 
     Raises
     ------
@@ -96,6 +102,8 @@ class Problem:
     target: Field
     corner_cutting: CornerCutting = CornerCutting.ALLOW
     maps: Mapping[str, GridMap] = field(default_factory=dict, repr=False)
+    published_length: float = math.nan
+    queries: Queries | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         for name in ("start", "target"):
@@ -115,6 +123,14 @@ class Problem:
                 raise InputError(
                     f"map.{name}", f"{list(place)}, an obstacle", f"a free field{hint}"
                 )
+
+    @property
+    def told(self) -> str:
+        """From where to where, in words; of several queries how many, and one of them."""
+        ends = f"{self.start} to {self.target}"
+        if self.queries is None:
+            return ends
+        return f"{len(self.queries)} of them, such as {ends}"
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Draw the map with start and target (`Shown.plot`)."""

@@ -25,7 +25,8 @@ from gapath.errors import InputError, one_of, require, require_all
 from gapath.events import Event, Finished, RunStarted, TrialStarted
 from gapath.grid import GridMap
 from gapath.planning.path import octile_length
-from gapath.problem import Plan, Problem
+from gapath.problem import CornerCutting, Plan, Problem
+from gapath.scenario.listed import Queries
 from gapath.store.results import Results
 
 Measure = Callable[[Problem, Plan], float]
@@ -107,8 +108,8 @@ def head(batch: Batch, trial: int, plan: Plan) -> dict[str, Any]:
         "corner_cutting": problem.corner_cutting.name.lower(),
         "seed": batch.seed,
         "trial": trial,
-        "published_length": grid.published_length,
-        "length_ratio": _length_ratio(plan, grid.published_length),
+        "published_length": problem.published_length,
+        "length_ratio": _length_ratio(plan, problem.published_length),
         "metrics": measured(problem, plan),
     }
 
@@ -268,6 +269,37 @@ class Task(Protocol):
 
     def line(self, rows: list[Any]) -> str:
         """Sum rows up in one line."""
+
+
+@runtime_checkable
+class Posing(Protocol):
+    """A task whose trials are of several pairs of start and target on one map says of which."""
+
+    def pose(self, grid: GridMap, listed: Queries | None, rule: CornerCutting) -> Queries:
+        """Say what is asked, and in which order.
+
+        Parameters
+        ----------
+        grid : GridMap
+            The map.
+        listed : Queries or None
+            What the map's reader lists.
+        rule : CornerCutting
+            The rule for diagonal steps.
+
+        Returns
+        -------
+        Queries
+            At least one; a run does its number of trials of each.
+        """
+
+
+@runtime_checkable
+class Listing(Protocol):
+    """A reader of maps whose format may come with pairs of start and target."""
+
+    def queries(self, grid: GridMap) -> Queries | None:
+        """Give them, of the map that it has read; None if there are none."""
 
 
 def check_events(task: type[Task]) -> None:

@@ -20,13 +20,13 @@ from gapath.planning.planner import Planner
 from gapath.planning.shortest_path import shortest_path
 from gapath.planning.simulation import plan_once, plan_trials
 from gapath.problem import CornerCutting, Plan, PlanStatus, Problem
+from gapath.querying.told import trial_events
 from gapath.running import config
 from gapath.running.experiment import execute, run_started
 from gapath.running.naming import Method
 from gapath.store.settings import flatten
 from gapath.task import Batch, Task, check_events, columns, find_task
 from gapath.tasks.plan import Task as PlanTask
-from gapath.tasks.plan import trial_events
 
 PLANNERS, RECORDERS, MAPS = map(yaml_names, ("planner", "recorder", "map"))
 

@@ -142,8 +142,7 @@ def _info(arguments: argparse.Namespace) -> int:
         task.groups[0]: run.method,
         "map": f"{grid.name}, instance {grid.instance}, {grid.cols} x {grid.rows} fields of "
         f"{grid.resolution:g} m ({grid.source})",
-        "problem": f"{problem.start} to {problem.target}, "
-        f"corner cutting: {problem.corner_cutting.name.lower()}",
+        "problem": f"{problem.told}, corner cutting: {problem.corner_cutting.name.lower()}",
         **task.told_optimum(run),
         "seed": str(run.seed),
         "trials": f"{finished.total()} of {run.trials}" + (f": {ends}" if ends else ""),

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from gapath.errors import Checks, InputError, require
 from gapath.grid import Field, GridMap
 from gapath.mapio._input import as_field, read_text
+from gapath.scenario.listed import Queries
 
 SUFFIXES: tuple[str, ...] = (".map",)
 
@@ -153,6 +154,38 @@ class Reader:
             published_length=published,
         )
 
+    def queries(self, grid: GridMap) -> Queries | None:
+        """Read all rows of the scenario, if there is one.
+
+        Parameters
+        ----------
+        grid : GridMap
+            What `read` gave.
+
+        Returns
+        -------
+        Queries or None
+            In the order of the file.
+
+        Raises
+        ------
+        InputError
+            If a row of the scenario is of a map of another name or size.
+        """
+        if self.scenario is None:
+            return None
+        problems = read_scenario(self.scenario)
+        for number, problem in enumerate(problems):
+            self._check(problem, number, grid.rows, grid.cols)
+        ends = np.array([(*p.start, *p.target) for p in problems], dtype=np.int32)
+        return Queries(
+            np.arange(len(problems), dtype=np.int32),
+            np.array([problem.bucket for problem in problems], dtype=np.int32),
+            ends[:, :2],
+            ends[:, 2:],
+            np.array([problem.optimal_length for problem in problems]),
+        )
+
     def _scenario_row(self, scenario: str, rows: int, cols: int) -> ScenarioProblem:
         problems = read_scenario(scenario)
         require(
@@ -162,7 +195,12 @@ class Reader:
             f"a row of {scenario}, which has {len(problems)}",
         )
         problem = problems[self.problem]
-        where = f"{scenario}, row {self.problem}"
+        self._check(problem, self.problem, rows, cols)
+        return problem
+
+    def _check(self, problem: ScenarioProblem, number: int, rows: int, cols: int) -> None:
+        """Raise InputError if a row of the scenario is not of this map."""
+        where = f"{self.scenario}, row {number}"
         name = PureWindowsPath(problem.map_name).name  # after the last / or \\
         require(name == Path(self.path).name, where, f"a problem on {name}", f"one on {self.path}")
         require(
@@ -171,7 +209,6 @@ class Reader:
             f"a map of {problem.cols} x {problem.rows}",
             f"the {cols} x {rows} fields of {self.path}",
         )
-        return problem
 
 
 def _passable(codes: NDArray[np.uint8], start: Field | None) -> NDArray[np.bool_]:

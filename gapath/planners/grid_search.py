@@ -28,7 +28,7 @@ class Planner:
     informed: bool
     minimise: str
 
-    exact = True
+    exact = optimal = True
 
     def __post_init__(self) -> None:
         require(

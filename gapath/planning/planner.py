@@ -17,6 +17,15 @@ class Particular(Protocol):
         """Raise InputError if a problem does not suit."""
 
 
+@runtime_checkable
+class Optimal(Protocol):
+    """A planner whose paths have the least of what it minimises says so; none is found twice."""
+
+    @property
+    def optimal(self) -> bool:
+        """Whether no path that it finds can be improved upon."""
+
+
 A_PLANNER = "a mapping with base, the name of a planner's YAML"
 """What is right where a setting has to be a planner."""
 

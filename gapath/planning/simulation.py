@@ -74,6 +74,42 @@ def _check(problem: Problem, planner: Planner, plan: Plan, seed: int, trial: int
         raise RuntimeError(f"the planner's path for seed {seed}, trial {trial}: {wrong}")
 
 
+def plan_timed(
+    problem: Problem, planner: Planner, number: int, keys: tuple[int, int, int]
+) -> TimedPlan:
+    """Plan once, and take the time of the planner's call.
+
+    Parameters
+    ----------
+    problem : Problem
+        Start and target on a known map, which a path joins.
+    planner : Planner
+        Any planner, whose kernels are compiled.
+    number : int
+        Of the trial.
+    keys : (int, int, int)
+        Those of the random stream.
+
+    Returns
+    -------
+    TimedPlan
+        The answer.
+
+    Raises
+    ------
+    InputError
+        If the planner returns no `Plan`.
+    RuntimeError
+        If the planner returns a path that is none.
+    """
+    random = stream(*keys)
+    begin = time.perf_counter()
+    plan = planner.plan(problem, random)
+    seconds = time.perf_counter() - begin
+    _check(problem, planner, plan, keys[0], number)
+    return TimedPlan(number, plan, seconds)
+
+
 def plan_trials(
     problem: Problem, optimum: Plan, planner: Planner, seed: int, trials: int, threads: int = 1
 ) -> Iterator[TimedPlan]:

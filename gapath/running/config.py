@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass, field
 from importlib.resources import files
 from typing import Any
 
+import numpy as np
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import InterpolationResolutionError
 
@@ -17,9 +18,10 @@ from gapath.grid import GridMap
 from gapath.planning.acceleration import with_kernels
 from gapath.problem import CornerCutting, Problem
 from gapath.running.naming import Method, map_name, method_of
+from gapath.scenario.listed import Queries
 from gapath.store.inputs import Inputs, watched
 from gapath.store.settings import flatten, nested
-from gapath.task import Task, check_events, columns, find_task
+from gapath.task import Listing, Posing, Task, check_events, columns, find_task
 
 
 @dataclass
@@ -35,7 +37,8 @@ class Root:
     map, recorder : dict
         The chosen components.
     seed, trials : int
-        Trials 0 to trials - 1 use the random streams (seed, trial).
+        Trials 0 to trials - 1 use the random streams (seed, trial); so many of each problem where
+        the task poses several.
     corner_cutting : str
         Name of a `CornerCutting` rule, in lower case.
     output : str
@@ -177,13 +180,15 @@ def make_run(
         made = with_kernels(task.make(settings), root.kernels)
         maps = made.read()
     with watched() as map_inputs:
-        problem = read_problem(root, maps)
+        problem = read_problem(root, made, maps)
+    trials = root.trials * (1 if problem.queries is None else len(problem.queries))
+    require(trials <= 10**6, "trials", root.trials, f"fewer: {trials} in all, at most 10^6")
     with watched() as checked_with:
         made.check(problem)
     columns(task.row)  # a package's wrong metric, or event, is refused before anything is written
     check_events(task)
     for recorder in recorders:
-        recorder.check(root.trials)
+        recorder.check(trials)
     return Run(
         root.name,
         method_of(task, _with_types_of(settings, loose), choices, overridden),
@@ -191,7 +196,7 @@ def make_run(
         made,
         [recorder for recorder in recorders if recorder.records],
         root.seed,
-        root.trials,
+        trials,
         flatten(settings),
         root.output,
         root.force,
@@ -259,17 +264,60 @@ def split(loose: Mapping[str, Any]) -> tuple[Root, dict[str, Any]]:
     return root, chosen
 
 
-def read_problem(settings: Root, maps: Mapping[str, GridMap]) -> Problem:
-    """Read the map and pose the problem that its start and target define, with a task's maps."""
+def read_problem(settings: Root, task: Task | None, maps: Mapping[str, GridMap]) -> Problem:
+    """Read the map and pose the problem that its start and target define.
+
+    Parameters
+    ----------
+    settings : Root
+        Name the map and the rule.
+    task : Task, optional
+        One that poses several problems is asked which (`gapath.task.Posing`).
+    maps : mapping of str to GridMap
+        What else the task has read.
+
+    Returns
+    -------
+    Problem
+        Of several the first that can be solved, or else that can be asked.
+
+    Raises
+    ------
+    InputError
+        If the map cannot be read, or has no such start and target.
+    """
     rule = CornerCutting.named(settings.corner_cutting)
-    grid: GridMap = build("map", settings.map, "map").read()
+    reader = build("map", settings.map, "map")
+    grid: GridMap = reader.read()
     named = map_name(grid.name, settings.map)
     if named != grid.name:  # to replace a name takes a copy of the map
         grid = dataclasses.replace(grid, name=named)
+    if isinstance(task, Posing):
+        listed = reader.queries(grid) if isinstance(reader, Listing) else None
+        return _first_of(task.pose(grid, listed, rule), grid, rule, maps)
     for name in ("start", "target"):
         require(getattr(grid, name) is not None, f"map.{name}", "null", "a field [x, y]")
     assert grid.start is not None and grid.target is not None
-    return Problem(grid, grid.start, grid.target, rule, maps)
+    return Problem(grid, grid.start, grid.target, rule, maps, grid.published_length)
+
+
+def _first_of(
+    queries: Queries, grid: GridMap, rule: CornerCutting, maps: Mapping[str, GridMap]
+) -> Problem:
+    """Pose the first query that can be solved, or else the first whose ends are free."""
+    ends = np.hstack([queries.starts, queries.targets])
+    outside = (ends < 0) | (ends >= 2 * (grid.cols, grid.rows))
+    for index in np.flatnonzero(outside.any(axis=1))[:1]:
+        where = f"map {grid.name}, problem {queries.numbers[index]}"
+        limits = f"fields [x, y] with 0 <= x < {grid.cols}, 0 <= y < {grid.rows}"
+        raise InputError(where, f"{ends[index, :2].tolist()} to {ends[index, 2:].tolist()}", limits)
+    parts = grid.parts(int(rule))
+    start, target = (parts[at[:, 1], at[:, 0]] for at in (queries.starts, queries.targets))
+    free = (start > 0) & (target > 0)
+    joined = free & (start == target)
+    first = int(np.argmax(joined if joined.any() else free))
+    (x, y, u, v), length = ends[first].tolist(), float(queries.lengths[first])
+    return Problem(grid, (x, y), (u, v), rule, maps, length, queries)
 
 
 def task_of(settings: Settings) -> Task:

@@ -252,4 +252,5 @@ def _manifest(
             for name in names
         },
         settings=dict(run.settings),
+        queries="" if run.problem.queries is None else run.problem.queries.digest,
     )

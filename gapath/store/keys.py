@@ -100,7 +100,8 @@ def run_key(settings: Flat, problem: Problem, inputs: Inputs) -> str:
 
 def _posed(problem: Problem) -> list[str]:
     others = [f"{name} {grid.digest}" for name, grid in sorted(problem.maps.items())]
-    return [problem.map.digest, f"{problem.start} {problem.target}", *others]
+    queries = [] if problem.queries is None else [problem.queries.digest]
+    return [problem.map.digest, f"{problem.start} {problem.target}", *others, *queries]
 
 
 def _hash(parts: Iterable[str]) -> str:

@@ -48,7 +48,7 @@ class Manifest:
     map_digest : str
         `gapath.grid.GridMap.digest`.
     start, target : str
-        The fields "(x, y)" from which and to which.
+        The fields "(x, y)" from which and to which; of several problems those of one.
     method : str
         Name of the planner or navigator for people: `preset`, and what differs from it.
     preset : str
@@ -71,6 +71,9 @@ class Manifest:
     settings : mapping of str to str, int, float, bool or None
         The settings, flat. Who reads runs reads them here; ``config.yaml`` says the same to
         people, and is read for what earlier versions made: then None stands here.
+    queries : str
+        `gapath.scenario.listed.Queries.digest` of a run over several pairs of start and target,
+        empty of others.
     results : Results
         What the trials of ``trials.parquet`` come to; None of earlier versions.
     """
@@ -96,6 +99,7 @@ class Manifest:
     late_inputs: Mapping[str, str]
     files: Mapping[str, FileEntry]
     settings: Mapping[str, Value] | None = None
+    queries: str = ""
     results: Results | None = None
 
     def write(self, folder: RunFolder) -> None:

@@ -1,6 +1,5 @@
 """The task to plan: trials are planning queries on a known map."""
 
-import json
 import math
 import statistics
 from collections.abc import Iterator, Mapping
@@ -10,42 +9,17 @@ from typing import Any, ClassVar, Self
 
 from gapath.components import build
 from gapath.errors import require
-from gapath.events import Event, Evolved, RunStarted, Surveyed, TrialFinished, TrialStarted
+from gapath.events import Evolved, RunStarted, Surveyed, TrialFinished, TrialStarted
 from gapath.grid import GridMap
-from gapath.planning.path import octile_length
 from gapath.planning.planner import Particular, Planner
 from gapath.planning.shortest_path import shortest_path
-from gapath.planning.simulation import TimedPlan, plan_trials
+from gapath.planning.simulation import plan_trials
 from gapath.problem import Plan, PlanStatus, Problem
-from gapath.task import Batch, Row, Trial, head, metrics
+from gapath.querying.row import PlanRow, least_of, median_time, plan_values
+from gapath.querying.told import duration, trial_events
+from gapath.task import Batch, Trial, metrics
 
 _INFEASIBLE = PlanStatus.INFEASIBLE.name.lower()
-
-
-@dataclass(frozen=True)
-class PlanRow(Row):
-    """A row of ``trials.parquet``: a planning query; failures are rows too.
-
-    `optimality_ratio` is how much the path has of what the planner minimises over the least there
-    is: of the weights, or of the octile length; NaN where the least is not known. `cost` of a
-    failure is the planner's best fitness, obstacles counted as VLN, `obstacles` how many there are
-    on its best path; `stage_times_s` gives the wall time of each stage of a planner that has
-    stages, as JSON.
-    """
-
-    planner: str
-    status: str
-    feasible: bool
-    cost: float
-    obstacles: int
-    optimal_cost: float
-    minimises: str
-    optimality_ratio: float
-    epochs: int
-    evaluations: int
-    expansions: int
-    plan_time_s: float
-    stage_times_s: str
 
 
 @dataclass(frozen=True)
@@ -121,12 +95,13 @@ class Task:
         Trial
             In order.
         """
-        least = _least(batch.problem, optimum, self.planner.minimises)
+        quantity = self.planner.minimises
+        least = least_of(batch.problem, optimum, quantity)
         answers = plan_trials(
             batch.problem, optimum, self.planner, batch.seed, batch.trials, batch.threads
         )
         for answer in answers:
-            row = _row(batch, answer, optimum, self.planner.minimises, least)
+            row = PlanRow(**plan_values(batch, answer, optimum, quantity, least))
             events = partial(trial_events, answer, batch.seed)
             yield Trial(row, row.feasible, duration(answer.plan), events)
 
@@ -146,7 +121,7 @@ class Task:
         }
         if rows[0].status != _INFEASIBLE:
             lines["optimal cost"] = f"{rows[0].optimal_cost:g}"
-            lines["median time"] = _median_time(rows)
+            lines["median time"] = median_time(rows)
         if found:
             cost = statistics.median(row.cost for row in found)
             lines["median cost"] = f"{cost:g}, if found"
@@ -163,7 +138,7 @@ class Task:
         if rows[0].status == _INFEASIBLE:
             return _no_path(rows[0])
         found = sum(row.feasible for row in rows)
-        return f"{found} of {len(rows)} found, median {_median_time(rows)}"
+        return f"{found} of {len(rows)} found, median {median_time(rows)}"
 
 
 def _effort(row: PlanRow) -> dict[str, object]:
@@ -180,7 +155,7 @@ def _effort(row: PlanRow) -> dict[str, object]:
         lines |= {"epochs": row.epochs, "evaluations": row.evaluations}
     if row.expansions:
         lines["expansions"] = row.expansions
-    return lines | {"time": _median_time([row])}
+    return lines | {"time": median_time([row])}
 
 
 def _no_path(row: PlanRow) -> str:
@@ -189,73 +164,4 @@ def _no_path(row: PlanRow) -> str:
     return (
         "no path for the planner's robot and keypoints, one for a robot that is a point: try a "
         "smaller planner.robot_radius, or planner.keypoints=corners"
-    )
-
-
-def _median_time(rows: list[PlanRow]) -> str:
-    return f"{1000 * statistics.median(row.plan_time_s for row in rows):.3g} ms"
-
-
-def trial_events(answer: TimedPlan, seed: int, step: int) -> Iterator[Event]:
-    """Tell a planning query as events.
-
-    Parameters
-    ----------
-    answer : TimedPlan
-        The planner's answer.
-    seed : int
-        The run's seed.
-    step : int
-        The step at which the trial begins.
-
-    Yields
-    ------
-    Event
-        Its start, what the planner made of the map (in the first trial), its evolution if it has
-        one, its end.
-    """
-    plan = answer.plan
-    yield TrialStarted(step, answer.number, seed)
-    if answer.number == 0 and (graph := plan.survey()) is not None:
-        yield Surveyed(step, answer.number, graph)
-    if plan.evolution is not None:
-        yield Evolved(step, answer.number, 0, plan.evolution)
-    yield TrialFinished(step + duration(plan) - 1, answer.number, plan.answer)
-
-
-def duration(plan: Plan) -> int:
-    """Give the number of steps that a query takes: one an epoch, at least one."""
-    return max(plan.epochs, 1)
-
-
-def _least(problem: Problem, optimum: Plan, quantity: str) -> float:
-    """Give the least of what a planner minimises; NaN if there is no path or nobody knows."""
-    if optimum.feasible and quantity == "length":
-        optimum = shortest_path(problem, by_length=True)
-    return _amount(optimum, quantity)
-
-
-def _amount(plan: Plan, quantity: str) -> float:
-    if not plan.feasible:
-        return math.nan
-    return {"weights": plan.cost, "length": octile_length(plan.path)}.get(quantity, math.nan)
-
-
-def _row(batch: Batch, answer: TimedPlan, optimum: Plan, quantity: str, least: float) -> PlanRow:
-    plan = answer.plan
-    return PlanRow(
-        **head(batch, answer.number, plan),
-        planner=batch.method,
-        status=plan.status.name.lower(),
-        feasible=plan.feasible,
-        cost=plan.cost,
-        obstacles=plan.obstacles,
-        optimal_cost=optimum.cost,
-        minimises=quantity,
-        optimality_ratio=_amount(plan, quantity) / least if least else math.nan,
-        epochs=plan.epochs,
-        evaluations=plan.evaluations,
-        expansions=plan.expansions,
-        plan_time_s=answer.plan_time_s,
-        stage_times_s=json.dumps(dict(plan.stages)),
     )

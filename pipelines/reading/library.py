@@ -3,7 +3,7 @@
 import glob
 import warnings
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,7 +13,15 @@ import pandas as pd
 
 from gapath.driving.retold import Drive
 from gapath.errors import InputError, require
-from gapath.events import DriveFinished, Event, Evolved, Finished, TrialFinished, TrialStarted
+from gapath.events import (
+    DriveFinished,
+    Event,
+    Evolved,
+    Finished,
+    Posed,
+    TrialFinished,
+    TrialStarted,
+)
 from gapath.grid import GridMap
 from gapath.kernels.raster import polyline
 from gapath.pictures.shown import Shown
@@ -30,6 +38,7 @@ from gapath.running.naming import usual_values
 from gapath.store.records import RunRecord, find_runs, is_run, read_record
 from gapath.store.settings import Value, nested, tabular
 from gapath.store.status import Status
+from gapath.task import Posing, find_task
 
 if TYPE_CHECKING:
     from gapath.pictures.shown import Axes
@@ -181,7 +190,10 @@ class Run(Shown):
             return run_start(self.log).problem
         usual, known = usual_values(), self.record.known
         how = {name: usual[name] for name in HOW}
-        problem = read_problem(split(nested(self.record.settings) | how)[0], {})
+        root, chosen = split(nested(self.record.settings) | how)
+        task = find_task(root.task)
+        made = task.make(chosen) if issubclass(task, Posing) else None
+        problem = read_problem(root, made, {})
         right = f"the map as it was, {known.map_digest[:12]}"
         require(problem.map.digest == known.map_digest, "map", problem.map.digest[:12], right)
         return problem
@@ -215,10 +227,17 @@ class Run(Shown):
         events = self._events(number)
         end = events[-1]
         if isinstance(end, TrialFinished):
-            return _plan(self.problem, events, end)
+            return _plan(self._asked(events), events, end)
         where, right = f"{self.record.name}, trial {number}", "a plan or a drive"
         require(isinstance(end, DriveFinished), where, type(end).__name__, right)
         return Drive(self.problem, events)
+
+    def _asked(self, events: list[Event]) -> Problem:
+        """Give the problem of a trial; raises InputError where start or target is blocked."""
+        posed = next((event for event in events if isinstance(event, Posed)), None)
+        if posed is None:
+            return self.problem
+        return replace(self.problem, start=posed.start, target=posed.target)
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Draw its first trial, without a log its map (`Shown.plot`)."""

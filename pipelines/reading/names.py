@@ -48,8 +48,8 @@ def told_apart(runs: Sequence[RunRecord]) -> list[RunRecord]:
     maps = _differences(
         runs,
         lambda run: (run.known.map, run.known.map_instance),
-        lambda run: (run.known.map_digest, run.known.start, run.known.target),
-        (_map, _ends, _digest),
+        lambda run: (run.known.map_digest, run.known.start, run.known.target, run.known.queries),
+        (_map, _ends, _digest, _queries),
     )
     return [_renamed(*each) for each in zip(runs, methods, maps, strict=True)]
 
@@ -93,6 +93,10 @@ def _ends(run: RunRecord) -> dict[str, Value]:
 
 def _digest(run: RunRecord) -> dict[str, Value]:
     return {"content": run.known.map_digest[:8]}
+
+
+def _queries(run: RunRecord) -> dict[str, Value]:
+    return {"problems": run.known.queries[:8] or "one"}
 
 
 def _hashes(inputs: Inputs) -> dict[str, Value]:

@@ -33,6 +33,9 @@ FOLDER = "runs"
 MOST_TRIALS = 200
 """Trials that the page of a run shows."""
 
+ONE_OF = ", one of several problems"
+"""What is said behind start and target of a run over several."""
+
 _MOST_FILES = 30
 _MARK = b'<meta name="generator" content="gapath-report">'
 
@@ -235,7 +238,7 @@ def _what(run: RunRecord, method: str, rate: float) -> list[tuple[str, str]]:
         ("state", f"{run.state}: {run.status.message}" if run.status.message else str(run.state)),
         ("task", known.task),
         ("map", f"{label(known.map)}, instance {known.map_instance}"),
-        ("start, target", f"{known.start}, {known.target}"),
+        ("start, target", f"{known.start}, {known.target}" + (ONE_OF if known.queries else "")),
         (method, label(known.method)),
         ("preset", known.preset),
         *((f"changed: {name}", _value(value)) for name, value in known.changes.items()),

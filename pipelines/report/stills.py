@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from gapath.errors import InputError
-from gapath.events import Event, Evolved, Finished, Stepped, TrialFinished
+from gapath.events import Event, Evolved, Finished, Posed, RunStarted, Stepped, TrialFinished
 from gapath.grid import Field, GridMap
 from gapath.pipelines.reading.logs import events_of, has_log, run_start
+from gapath.querying.told import posed_in
 from gapath.recorders.mcap import FILE
 from gapath.store.records import RunRecord
 
@@ -26,11 +27,19 @@ _SIDE = 512
 """Longest side of a map's picture; a larger map is drawn smaller."""
 
 
+class Asked(NamedTuple):
+    """What was asked: letters and fields of starts and targets, points of best paths."""
+
+    ends: list[tuple[str, int, int]]
+    least: list[str]
+
+
 class Still(NamedTuple):
-    """A picture: lines, each as SVG writes its points, and what they are."""
+    """A picture: lines, each as SVG writes its points, what they are, and what was asked."""
 
     caption: str
     lines: list[str]
+    asked: Asked
 
 
 class Stills(NamedTuple):
@@ -42,12 +51,8 @@ class Stills(NamedTuple):
         Data URI of a PNG, see-through where a field costs little.
     cols, rows : int
         Size of the map.
-    ends : list of (str, int, int)
-        Letter and field of the start and the target.
     size : float
-        Of their marks, in fields.
-    least : str
-        The points of a best path; empty where there is none.
+        Of the marks of starts and targets, in fields.
     stills : list of Still
         The pictures.
     shares : list of dict of str to float
@@ -57,9 +62,7 @@ class Stills(NamedTuple):
     map: str
     cols: int
     rows: int
-    ends: list[tuple[str, int, int]]
     size: float
-    least: str
     stills: list[Still]
     shares: list[dict[str, float]]
 
@@ -105,33 +108,42 @@ def stills_of(run: RunRecord) -> Stills | str:
     try:
         events = events_of(run)
         start = run_start(events)
-        grid, problem = start.problem.map, start.problem
-        stills, shares = _stills(events)
+        grid = start.problem.map
+        stills, shares = _stills(events, start)
     except InputError as error:
         return str(error)
-    ends = [("S", *problem.start), ("T", *problem.target)]
     size = max(0.4, max(grid.cols, grid.rows) / 45)
-    least = _points(start.optimal_path)
-    return Stills(_picture(grid), grid.cols, grid.rows, ends, size, least, stills, shares)
+    return Stills(_picture(grid), grid.cols, grid.rows, size, stills, shares)
 
 
-def _stills(events: Iterator[Event]) -> tuple[list[Still], list[dict[str, float]]]:
+def _asked(posed: Posed) -> Asked:
+    least = _points(posed.optimal_path)
+    return Asked([("S", *posed.start), ("T", *posed.target)], [least] if least else [])
+
+
+def _stills(
+    events: Iterator[Event], start: RunStarted
+) -> tuple[list[Still], list[dict[str, float]]]:
     history: list[Still] = []
+    shared = _asked(posed_in(start, ()))
+    own: list[Asked] = []
     shares: list[dict[str, float]] = []
     ways: list[str] = []
     places: list[Field] = []
     ended = 0
     for event in events:
         if isinstance(event, Evolved):
-            history = history or _epochs(event)
+            history = history or _epochs(event, own[-1] if own else shared)
             if population := event.evolution.population:
                 shares.append(dict(zip(population.names, population.shares, strict=True)))
+        elif isinstance(event, Posed):
+            own.append(_asked(event))
         elif isinstance(event, Stepped):
             places.append(event.place)
         elif isinstance(event, Finished):
             ended += 1
             if places and not history:
-                history = _steps(event, places)
+                history = _steps(event, places, shared)
             if ended <= _TRIALS:
                 way = _points(event.answer.path if isinstance(event, TrialFinished) else places)
                 ways += [way] if way else []
@@ -140,10 +152,13 @@ def _stills(events: Iterator[Event]) -> tuple[list[Still], list[dict[str, float]
                 break
     drawn = min(ended, _TRIALS)
     them = "The first trial" if drawn == 1 else f"The first {drawn} trials"
-    return [*history, Still(f"{them}: {len(ways)} with a way to show", ways)], shares
+    own = own[:_TRIALS]
+    both = Asked([end for one in own for end in one.ends], [a for one in own for a in one.least])
+    last = Still(f"{them}: {len(ways)} with a way to show", ways, both if own else shared)
+    return [*history, last], shares
 
 
-def _epochs(event: Evolved) -> list[Still]:
+def _epochs(event: Evolved, asked: Asked) -> list[Still]:
     evolution = event.evolution
     last = len(evolution.best)
     return [
@@ -151,17 +166,18 @@ def _epochs(event: Evolved) -> list[Still]:
             f"Trial {event.trial}, epoch {epoch} of {last}: best fitness "
             f"{evolution.best[epoch - 1]:.6g}",
             [_points(evolution.way_points[epoch - 1])],
+            asked,
         )
         for epoch in sorted({1, (last + 1) // 2, last})
     ]
 
 
-def _steps(event: Finished, places: Sequence[Field]) -> list[Still]:
+def _steps(event: Finished, places: Sequence[Field], asked: Asked) -> list[Still]:
     last = len(places) - 1
     return [
-        Still(f"Trial {event.trial}, step {step} of {last}", [_points(places[: step + 1])])
+        Still(f"Trial {event.trial}, step {step} of {last}", [_points(places[: step + 1])], asked)
         for step in sorted({last // 3, 2 * last // 3})
-    ] + [Still(f"Trial {event.trial}, {event.ending} after {last} steps", [_points(places)])]
+    ] + [Still(f"Trial {event.trial}, {event.ending} after {last} steps", [_points(places)], asked)]
 
 
 def _points(path: NDArray[np.int32] | Sequence[Field]) -> str:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from gapath.pipelines.numbers.grouped import Groups
 from gapath.pipelines.numbers.statistics import wilson
@@ -51,7 +51,8 @@ def summarise_cells(trials: pd.DataFrame, cases: pd.DataFrame, measures: Measure
     table["runs"] = [tuple(sorted(mine)) for _, mine in keys.groupby(pairs.ngroup())]
     run = cases.index.get_indexer(pd.Index(trials["key"]))
     cell = pairs.ngroup().to_numpy()[run]
-    problem = cases.groupby(["place", "problem"], sort=False).ngroup().to_numpy()[run]
+    place = pd.factorize(cases["place"])[0][run]
+    problem = _numbered(place, *(trials[name] for name in ("map_instance", "start", "target")))
     trials = trials.assign(cell=cell, problem=problem)
     count = len(table)
     success = trials[measures.success].to_numpy(dtype=np.float64)
@@ -73,6 +74,15 @@ def summarise_cells(trials: pd.DataFrame, cases: pd.DataFrame, measures: Measure
     for share in measures.shares:
         columns[share.name] = np.bincount(cell, share.read(trials), count) / table["n"].to_numpy()
     return Cells(table.assign(**columns), trials)
+
+
+def _numbered(*columns: ArrayLike) -> Index:
+    """Give rows that are equal in all columns one number."""
+    number = np.zeros(len(np.asarray(columns[0])), dtype=np.int64)
+    for column in columns:
+        codes, levels = pd.factorize(column)
+        number = pd.factorize(number * max(len(levels), 1) + codes)[0]
+    return number
 
 
 def _by_problem(cell: Index, problem: Index, success: Values, count: int) -> pd.DataFrame:

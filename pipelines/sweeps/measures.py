@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from gapath.driving.row import DriveRow
 from gapath.pipelines.numbers.drive_summary import RETURNED
+from gapath.querying.row import PlanRow
 from gapath.task import Row, Task
-from gapath.tasks.plan import PlanRow
 
 TRIALS = "trials"
 """What trials are called that have no name of their own."""

@@ -115,8 +115,8 @@ def cases_of(runs: Sequence[RunRecord]) -> pd.DataFrame:
     -------
     DataFrame
         Index: keys; `place`, the map without what tells its problems apart; `problem`, the
-        instance, start and target; `method`, `preset` and `changes` as the manifest has them,
-        and `settings`, a dict of all that belong to the method.
+        instance, start and target, or all of several; `method`, `preset` and `changes` as the
+        manifest has them, and `settings`, a dict of all that belong to the method.
     """
     files = [_file(run) for run in runs]
     places = pd.Series([_place(run) for run in runs], dtype=object)
@@ -129,7 +129,7 @@ def cases_of(runs: Sequence[RunRecord]) -> pd.DataFrame:
     return pd.DataFrame(
         {
             "place": places.to_numpy(),
-            "problem": [f"{r.known.map_instance} {r.known.start} {r.known.target}" for r in runs],
+            "problem": [_problem(run) for run in runs],
             "method": [run.known.method for run in runs],
             "preset": [run.known.preset for run in runs],
             "changes": [run.known.changes for run in runs],
@@ -137,6 +137,11 @@ def cases_of(runs: Sequence[RunRecord]) -> pd.DataFrame:
         },
         index=pd.Index([run.folder.name for run in runs], name="key"),
     )
+
+
+def _problem(run: RunRecord) -> str:
+    known = run.known
+    return f"{known.map_instance} {known.start} {known.target} {known.queries}"
 
 
 def _place(run: RunRecord) -> str:

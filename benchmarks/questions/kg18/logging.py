@@ -17,12 +17,12 @@ from benchmarks.measure import Row, make_planner, make_problem, quartiles, timed
 from gapath.kernels.rng import stream
 from gapath.planning.shortest_path import shortest_path
 from gapath.planning.simulation import TimedPlan
+from gapath.querying.told import trial_events
 from gapath.recorders import mcap
 from gapath.running.config import Run
 from gapath.running.experiment import run_started
 from gapath.running.naming import Method
 from gapath.tasks.plan import Task as PlanTask
-from gapath.tasks.plan import trial_events
 
 KINDS = (
     ("kg18_test1", 1, 1),

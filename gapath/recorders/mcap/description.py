@@ -16,6 +16,7 @@ from gapath.errors import require
 from gapath.events import RunStarted
 from gapath.grid import Field, GridMap
 from gapath.problem import CornerCutting, Problem
+from gapath.scenario.listed import Queries
 from gapath.store.settings import of_text, text_of
 
 LOG_VERSION = "5"
@@ -25,6 +26,9 @@ _READ = ("4", LOG_VERSION)  # a log of version 4 has no population, and is else 
 
 NAME = "gapath"
 """Name of the metadata record."""
+
+QUERIES = "queries.npy"
+"""Name of the attachment of a run over several pairs of start and target."""
 
 OPTIMAL_PATH = "optimal_path.npy"
 """Name of the last attachment; the maps lie before it."""
@@ -90,7 +94,19 @@ def attachments(run: RunStarted) -> dict[str, bytes]:
     """Give a run's arrays as ``.npy`` files, by name."""
     maps = _all_maps(run.problem).items()
     weights = {name + _NPY: _npy(grid.weights, "<f8") for name, grid in maps}
-    return weights | {OPTIMAL_PATH: _npy(run.optimal_path, "<i4")}
+    queries = run.problem.queries
+    listed = {} if queries is None else {QUERIES: _npy(_in_rows(queries), "<f8")}
+    return weights | listed | {OPTIMAL_PATH: _npy(run.optimal_path, "<i4")}
+
+
+def _in_rows(queries: Queries) -> NDArray[np.float64]:
+    """Put queries into one array: number, bucket, start x, y, target x, y, length."""
+    return np.column_stack(queries.columns)
+
+
+def _queries(rows: NDArray[np.float64]) -> Queries:
+    whole = rows[:, :6].astype(np.int32)
+    return Queries(whole[:, 0], whole[:, 1], whole[:, 2:4], whole[:, 4:], rows[:, 6])
 
 
 def run_started(text: Mapping[str, str], files: Mapping[str, bytes]) -> RunStarted:
@@ -130,6 +146,7 @@ def run_started(text: Mapping[str, str], files: Mapping[str, bytes]) -> RunStart
             _field(text["target"]),
             CornerCutting[text["corner_cutting"]],
             {name: _grid_map(name, text, files) for name in json.loads(text["maps"])},
+            queries=_queries(_array(files[QUERIES])) if QUERIES in files else None,
         ),
         seed=int(text["seed"]),
         trials=int(text["trials"]),

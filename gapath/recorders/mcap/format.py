@@ -31,6 +31,17 @@ uint64 seed
 string method             # name of the planner or navigator
 string settings           # the run's settings, a line each: name: value
 """,
+    "gapath_msgs/msg/Query": """\
+# A trial has a start and a target of its own, of several on one map.
+uint64 trial
+float64 optimal_cost      # infinite: no path exists
+uint32 number             # of the query among all that are listed
+int32 start_x             # fields
+int32 start_y
+int32 target_x
+int32 target_y
+int32[] optimal_path      # x, y, x, y, ... [fields]; empty: no path exists
+""",
     "gapath_msgs/msg/GaRun": """\
 # A genetic algorithm ran: one row an epoch, rows one after another.
 uint64 trial
@@ -163,6 +174,7 @@ TOPICS = {
     "/trial_start": "gapath_msgs/msg/TrialStart",
     "/run_end": "gapath_msgs/msg/RunEnd",
     "/path": "nav_msgs/msg/Path",
+    "/query": "gapath_msgs/msg/Query",
     "/ga_run": "gapath_msgs/msg/GaRun",
     "/memetic_run": "gapath_msgs/msg/MemeticRun",
     "/graph": "gapath_msgs/msg/Graph",

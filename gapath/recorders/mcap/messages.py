@@ -14,6 +14,7 @@ from gapath.events import (
     Event,
     Evolved,
     PathsChanged,
+    Posed,
     RunFinished,
     RunStarted,
     Stepped,
@@ -51,6 +52,7 @@ from gapath.store.settings import text_of
 _INT32, _FLOAT64 = np.dtype("<i4"), np.dtype("<f8")
 _TRIAL = struct.Struct("<QQ")
 _GA_RUN = struct.Struct("<QQII")
+_QUERY = struct.Struct("<QdI4i")
 _RESULT = struct.Struct("<QQQQQdddB?2x")  # padded for the count that follows
 
 
@@ -88,6 +90,8 @@ class Messages:
                 self._drive.begin()
                 texts = strings_cdr(self._run.method, self._settings)
                 yield Record("/trial_start", step, ENCAPSULATION + _TRIAL.pack(trial, seed) + texts)
+            case Posed():
+                yield from _posed(event, self._run.problem.map)
             case Evolved():
                 population = event.evolution.population
                 yield memetic_run(event, population) if population else _ga_run(event)
@@ -124,9 +128,19 @@ def _run_started(run: RunStarted) -> Iterator[Record]:
         yield Record("/optimal_path", 0, path_cdr(0, grid.to_metres(run.optimal_path)))
     text = (
         f"run started: {run.experiment}, {run.method} on {grid.name} "
-        f"from {problem.start} to {problem.target}, seed {run.seed}, {run.trials} trials"
+        f"from {problem.told}, seed {run.seed}, {run.trials} trials"
     )
     yield log_record(0, INFO, text)
+
+
+def _posed(event: Posed, grid: GridMap) -> Iterator[Record]:
+    step, path = event.step, event.optimal_path
+    yield pose_record("/start", step, in_metres(grid, event.start))
+    yield pose_record("/target", step, in_metres(grid, event.target))
+    yield Record("/optimal_path", step, path_cdr(step, grid.to_metres(path)))
+    ends = (*event.start, *event.target)
+    head = _QUERY.pack(event.trial, event.optimal_cost, event.number, *ends)
+    yield Record("/query", step, arrays_cdr(head, np.asarray(path, _INT32)))
 
 
 def _ga_run(event: Evolved) -> Record:
@@ -206,12 +220,19 @@ def _read_surveyed(step: int, m: Any) -> Surveyed:
     return Surveyed(step, m.trial, graph)
 
 
+def _read_posed(step: int, m: Any) -> Posed:
+    start, target = (int(m.start_x), int(m.start_y)), (int(m.target_x), int(m.target_y))
+    path = np.array(m.optimal_path, dtype=np.int32).reshape(-1, 2)
+    return Posed(step, m.trial, m.number, start, target, path, m.optimal_cost)
+
+
 def _read_finished(step: int, m: Any) -> TrialFinished:
     return TrialFinished(step, m.trial, read_answer(m))
 
 
 _READERS: dict[str, Callable[[int, Any], Event]] = {
     "/trial_start": lambda step, m: TrialStarted(step, m.trial, m.seed),
+    "/query": _read_posed,
     "/ga_run": _read_evolved,
     MEMETIC_RUN: read_memetic_run,
     "/graph": _read_surveyed,

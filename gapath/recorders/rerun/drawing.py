@@ -12,7 +12,7 @@ import rerun as rr
 import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
-from gapath.events import RunStarted, TrialStarted
+from gapath.events import Posed, RunStarted, TrialStarted
 from gapath.grid import GridMap
 from gapath.store.settings import text_of
 
@@ -60,10 +60,9 @@ def _hash(parts: list[object]) -> str:
     return hashlib.sha256(repr(parts).encode()).hexdigest()
 
 
-def log_problem(stream: rr.RecordingStream, run: RunStarted, width: float) -> None:
+def log_problem(stream: rr.RecordingStream, posed: Posed, width: float) -> None:
     """Log start, target and the optimal path, so wide, which never change."""
-    problem = run.problem
-    for name, place in (("start", problem.start), ("target", problem.target)):
+    for name, place in (("start", posed.start), ("target", posed.target)):
         marker = rr.Points2D(
             centres(np.array([place])),
             colors=[YELLOW],
@@ -72,9 +71,9 @@ def log_problem(stream: rr.RecordingStream, run: RunStarted, width: float) -> No
             draw_order=30,
         )
         stream.log(f"map/{name}", marker, static=True)
-    if len(run.optimal_path):
+    if len(posed.optimal_path):
         stream.log("map/optimal_path", line(OPTIMAL, width, draw_order=20), static=True)
-        strip = rr.LineStrips2D.from_fields(strips=[centres(run.optimal_path)])
+        strip = rr.LineStrips2D.from_fields(strips=[centres(posed.optimal_path)])
         stream.log("map/optimal_path", strip, static=True)
 
 
@@ -112,13 +111,14 @@ def send_curve(
     stream.send_columns(entity, time, rr.Scalars.columns(scalars=values))
 
 
-def problem_rows(run: RunStarted, trial: TrialStarted) -> dict[str, object]:
+def problem_rows(run: RunStarted, trial: TrialStarted, posed: Posed) -> dict[str, object]:
     """Give what a table says of the problem, label -> value."""
     problem, grid = run.problem, run.problem.map
     return {
         "map": title(grid),
         "size": f"{grid.cols} by {grid.rows} fields",
-        "start, target": f"{problem.start}, {problem.target}",
+        **({} if problem.queries is None else {"problem": posed.number}),
+        "start, target": f"{posed.start}, {posed.target}",
         "corner cutting": problem.corner_cutting.name.lower().replace("_", " "),
         "seed, trial": f"{run.seed}, {trial.trial}",
         "experiment": run.experiment,

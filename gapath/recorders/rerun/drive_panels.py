@@ -13,6 +13,7 @@ from gapath.events import (
     TrialStarted,
 )
 from gapath.grid import GridMap
+from gapath.querying.told import posed_in
 from gapath.recorders.rerun.drawing import blueprint, document, map_view, problem_rows
 
 _SENTENCES = {
@@ -39,7 +40,7 @@ def text(
         "step limit": able.step_limit,
         "shortest": f"{shortest} steps" if shortest >= 0 else "no way",
         **{f"calls of part {part}": parts.count(part) for part in sorted(set(parts))},
-        **problem_rows(run, trial),
+        **problem_rows(run, trial, posed_in(run, ())),
     }
     legend = (
         "- **yellow**: the robot, its trail, its field of view\n"

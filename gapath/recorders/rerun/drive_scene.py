@@ -21,6 +21,7 @@ from gapath.grid import GridMap
 from gapath.kernels.field_of_view import HEADING_X, HEADING_Y
 from gapath.kernels.units import OBSTACLE, SCALE
 from gapath.problem import Answer
+from gapath.querying.told import posed_in
 from gapath.recorders.rerun.drawing import (
     GREEN,
     GREY,
@@ -96,7 +97,7 @@ def recording(run: RunStarted, events: list[Event]) -> bytes:
     stream.send_blueprint(layout(run.problem.map, TIMELINE, timed), make_active=False)
     stream.send_recording_name(f"{run.problem.map.name} {run.method} trial {trial.trial}")
     _log_true_map(stream, run.problem.map)
-    log_problem(stream, run, 2)
+    log_problem(stream, posed_in(run, events), 2)
     _send_known_map(stream, drive)
     _send_robot(stream, drive, able.sensor_range)
     _send_paths(stream, drive)

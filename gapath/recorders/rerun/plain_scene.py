@@ -5,6 +5,7 @@ import rerun as rr
 import rerun.blueprint as rrb
 
 from gapath.events import Event, Finished, PathsChanged, RunStarted, Stepped, TrialStarted
+from gapath.querying.told import posed_in
 from gapath.recorders.rerun.drawing import (
     GREEN,
     blueprint,
@@ -49,7 +50,8 @@ def recording(run: RunStarted, events: list[Event]) -> bytes:
     layout = blueprint(map_view(run.problem.map), [text], TIMELINE)
     stream.send_blueprint(layout, make_active=False)
     stream.send_recording_name(f"{run.problem.map.name} {run.method} trial {trial.trial}")
-    log_problem(stream, run, 6)
+    posed = posed_in(run, events)
+    log_problem(stream, posed, 6)
     log_map(stream, run.problem.map)
     steps = [event for event in events if isinstance(event, Stepped)]
     way = np.array([step.place for step in steps], dtype=np.int32).reshape(-1, 2)
@@ -65,7 +67,11 @@ def recording(run: RunStarted, events: list[Event]) -> bytes:
         way = paths[-1] if paths else way
     stream.log("map/way", line(GREEN, 3, draw_order=24), static=True)
     stream.log("map/way", rr.LineStrips2D.from_fields(strips=[centres(way)]), static=True)
-    rows = {"ended": finished.ending, "fields of the way": len(way), **problem_rows(run, trial)}
+    rows = {
+        "ended": finished.ending,
+        "fields of the way": len(way),
+        **problem_rows(run, trial, posed),
+    }
     legend = (
         "- **green**: the way gone\n- **blue**: what the task is held against\n"
         "- **map**: the brighter, the dearer; white: obstacle\n"

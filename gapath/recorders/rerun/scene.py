@@ -5,11 +5,20 @@ import rerun as rr
 import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
-from gapath.events import Event, Evolved, RunStarted, Surveyed, TrialFinished, TrialStarted
+from gapath.events import (
+    Event,
+    Evolved,
+    Posed,
+    RunStarted,
+    Surveyed,
+    TrialFinished,
+    TrialStarted,
+)
 from gapath.grid import GridMap
 from gapath.history.evolution import Evolution
 from gapath.history.graph import Graph
 from gapath.kernels.raster import polyline
+from gapath.querying.told import posed_in
 from gapath.recorders.rerun.drawing import (
     GREEN,
     GREY,
@@ -68,7 +77,8 @@ def recording(run: RunStarted, events: list[Event]) -> bytes:
     surveys = [event for event in events if isinstance(event, Surveyed)]
     stream.send_blueprint(_blueprint(run, evolutions), make_active=False)
     stream.send_recording_name(f"{run.problem.map.name} {run.method} trial {trial.trial}")
-    log_problem(stream, run, 6)
+    posed = posed_in(run, events)
+    log_problem(stream, posed, 6)
     log_map(stream, run.problem.map)
     for survey in surveys:
         _log_graph(stream, run.problem.map, survey.graph)
@@ -76,7 +86,7 @@ def recording(run: RunStarted, events: list[Event]) -> bytes:
         _log_evolution(stream, run.problem.map, evolved, evolved.step - trial.step + 1)
     last = max((e.step - trial.step + len(e.evolution.best) for e in evolutions), default=None)
     _log_result(stream, finished, last)
-    stream.log("text", _text(run, trial, finished, evolutions, bool(surveys)), static=True)
+    stream.log("text", _text(run, (trial, posed, finished), evolutions, bool(surveys)), static=True)
     content: bytes = memory.drain_as_bytes()
     stream.disconnect()
     return content
@@ -186,12 +196,12 @@ def _send_points(
 
 def _text(
     run: RunStarted,
-    trial: TrialStarted,
-    finished: TrialFinished,
+    asked: tuple[TrialStarted, Posed, TrialFinished],
     evolutions: list[Evolved],
     surveyed: bool,
 ) -> rr.TextDocument:
     """Write the panel of settings and result, in Markdown."""
+    trial, posed, finished = asked
     if evolutions:
         effort = {"epochs": finished.answer.epochs, "evaluations": finished.answer.evaluations}
     else:
@@ -201,11 +211,11 @@ def _text(
     rows = {
         "status": finished.answer.status.name.lower().replace("_", " "),
         "cost": _number(finished.answer.cost),
-        "optimal cost": _number(run.optimal_cost),
+        "optimal cost": _number(posed.optimal_cost),
         "fields of the path": len(finished.answer.path),
         **effort,
         **shares,
-        **problem_rows(run, trial),
+        **problem_rows(run, trial, posed),
     }
     moving = ""
     if evolutions:
