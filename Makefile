@@ -11,7 +11,7 @@ help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' Makefile | sed 's/:.*## /\t/' | awk -F '\t' '{printf "make %-11s %s\n", $$1, $$2}'
 
 # These give computing times, or take both cores, so they run alone; the others two at a time.
-TIMED := table1 drives drives_enclosed s04_drives s04_table1 m22 m22_concave
+TIMED := table1 drives drives_enclosed s04_drives s04_table1 m22 m22_concave field
 # What no paper has: one decision at a time, many settings; each takes minutes of its own.
 OWN := drive_choices s04_sweep
 OTHERS := $(filter-out $(TIMED) $(OWN),$(basename $(notdir $(wildcard conf/experiment/*.yaml))))
@@ -31,6 +31,16 @@ UNSEEN := $(sort $(patsubst conf/experiment/%.yaml,%,$(wildcard conf/experiment/
 .PHONY: unseen
 unseen: $(VENV)/ready ## public maps that were not chosen, from GAPATH_DATA (some ten minutes)
 	@for name in $(UNSEEN); do \
+	  echo "experiment $$name"; $(BIN)/gapath experiment=$$name output="$(OUTPUT)" || exit $$?; \
+	done
+	@$(BIN)/gapath-report "$(OUTPUT)"
+
+# Each map, or each kind of maps, is an experiment of its own; conf/experiment/field.yaml, which needs no data, is among those of paper.
+FIELD := $(sort $(patsubst conf/experiment/%.yaml,%,$(wildcard conf/experiment/field/*/*.yaml)))
+
+.PHONY: field
+field: $(VENV)/ready ## whole scenarios and large maps: planners side by side, from GAPATH_DATA
+	@for name in $(FIELD); do \
 	  echo "experiment $$name"; $(BIN)/gapath experiment=$$name output="$(OUTPUT)" || exit $$?; \
 	done
 	@$(BIN)/gapath-report "$(OUTPUT)"

@@ -23,7 +23,7 @@ from gapath.pipelines.report.run_pages import Addresses, write_run_pages
 from gapath.store.durable import write_whole
 from gapath.store.records import RunRecord, find_runs
 
-_PAPERS = {"kg18": "KG18", "s04": "S04", "m22": "M22"}
+_PAPERS = {"kg18": "KG18", "s04": "S04", "m22": "M22", "field": "Many problems"}
 """Rooms of `pipelines`, and what the menu calls them."""
 
 _OTHERS = "Own experiments"

@@ -1,0 +1,1 @@
+"""Tables and figures of many problems on a map, as people hold planners against each other."""
