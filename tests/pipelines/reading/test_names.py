@@ -180,3 +180,11 @@ def test_a_yaml_that_cannot_be_read_is_one_line(content, gapath, tmp_path):
     code, out, errors = gapath("--config-dir", str(tmp_path / "conf"), "planner=mine")
     assert (code, out) == (2, "") and len(errors.splitlines()) == 1
     assert not (tmp_path / "out").exists()
+
+
+def test_two_scenarios_of_one_map_are_told_apart():
+    """Though each run stands for the same one of its problems."""
+    runs = [run_of({"map.scenario": "x.scen"}, key, queries=key * 64) for key in "ab"]
+    assert maps(*runs) == ["kg18_test1[problems=aaaaaaaa]", "kg18_test1[problems=bbbbbbbb]"]
+    one = run_of({"map.scenario": "x.scen"}, "c")
+    assert maps(runs[0], one) == ["kg18_test1[problems=aaaaaaaa]", "kg18_test1[problems=one]"]

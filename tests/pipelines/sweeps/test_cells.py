@@ -104,3 +104,13 @@ def test_the_interval_of_what_is_expected_holds_the_truth(rate, least):
     low, high = found["expected_spent_low"], found["expected_spent_high"]
     inside = np.mean((low <= truth) & (truth <= high))
     assert least <= inside <= 0.975, inside
+
+
+def test_a_run_over_a_scenario_has_the_problems_of_its_trials():
+    """Five problems twice, of which the first three succeed both times, the fourth once."""
+    trials, runs = planned([Tried("ga1", n=10, success=0.7), Tried("ga2", n=10, success=0.7)])
+    trials["start"] = [f"({i // 2}, 0)" for i in range(10)] * 2
+    cells = summarise_cells(trials, cases_of(runs), measures_of(find_task("plan")))
+    assert cells.table[["problems", "once", "always"]].to_numpy().tolist() == [[5, 4, 3]] * 2
+    numbers = cells.trials["problem"].to_numpy().reshape(2, 5, 2)
+    assert (numbers == numbers[:1, :, :1]).all() and len(np.unique(numbers)) == 5
