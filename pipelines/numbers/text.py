@@ -7,6 +7,9 @@ from gapath.pipelines.numbers.statistics import Interval
 NOTHING = "\N{EN DASH}"
 """What a cell shows where there is no number."""
 
+_SPACE = "\N{NARROW NO-BREAK SPACE}"
+"""Between thousands: no line ends there."""
+
 
 def number(value: float) -> str:
     """Write a number for people: three significant digits, no exponent.
@@ -26,7 +29,7 @@ def number(value: float) -> str:
     if math.isinf(value):
         return "∞"
     if value == 0 or float(value).is_integer() or abs(value) >= 1000:
-        return f"{value:,.0f}".replace(",", "\N{THIN SPACE}")
+        return f"{value:,.0f}".replace(",", _SPACE)
     decimals = max(0, 2 - math.floor(math.log10(abs(value))))
     text = f"{value:.{decimals}f}"
     return text.rstrip("0").rstrip(".") if "." in text else text

@@ -10,6 +10,7 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, Template
 
+from gapath.pipelines.numbers.text import number
 from gapath.pipelines.page.figures import picture_of
 from gapath.pipelines.page.rows import rows_of, width_of
 from gapath.pipelines.page.section import Section
@@ -62,7 +63,9 @@ def template(name: str) -> Template:
         keep_trailing_newline=True,
         auto_reload=False,
     )
-    environment.globals.update(rows_of=rows_of, width_of=width_of, picture_of=picture_of)
+    environment.globals.update(
+        number=number, rows_of=rows_of, width_of=width_of, picture_of=picture_of
+    )
     return environment.get_template(name)
 
 

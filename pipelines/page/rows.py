@@ -11,7 +11,7 @@ from gapath.pipelines.page.section import Table
 _LEAST, _MOST = -math.inf, math.inf
 _NUMBER = re.compile(
     r"([<>]?) ?([-+\N{MINUS SIGN}]?)"
-    r"(∞|\d[\d\N{THIN SPACE}\N{NARROW NO-BREAK SPACE}]*(?:\.\d+)?(?:e[-+]?\d+)?)"
+    r"(∞|\d[\d\N{NARROW NO-BREAK SPACE}]*(?:\.\d+)?(?:e[-+]?\d+)?)"
     r"(?![^\s,;(%\N{EN DASH}])"
 )
 """A number at the beginning of a cell; what follows explains it."""

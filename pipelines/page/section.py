@@ -226,8 +226,7 @@ def _escape(text: str) -> str:
         ("\\", r"\textbackslash "), ("&", r"\&"), ("%", r"\%"), ("$", r"\$"), ("#", r"\#"),
         ("_", r"\_"), ("{", r"\{"), ("}", r"\}"), ("~", r"\textasciitilde "), ("^", r"\^{}"),
         ("∞", r"$\infty$"), ("\N{EN DASH}", "--"), ("<", "$<$"), (">", "$>$"),
-        ("\N{THIN SPACE}", r"\,"), ("\N{NARROW NO-BREAK SPACE}", r"\,"),
-        ("\N{NO-BREAK SPACE}", "~"),
+        ("\N{NARROW NO-BREAK SPACE}", r"\,"), ("\N{NO-BREAK SPACE}", "~"),
     ):  # fmt: skip
         text = text.replace(plain, latex)
     return text

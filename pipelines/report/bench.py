@@ -140,7 +140,7 @@ def _shown(rows: pd.DataFrame) -> pd.DataFrame:
 def _text(cell: Any) -> str:
     """Write a cell: a number with three digits, text as it is, nothing where there is nothing."""
     try:
-        return "" if math.isnan(float(cell)) else _unbroken(number(float(cell)))
+        return "" if math.isnan(float(cell)) else number(float(cell))
     except ValueError:
         return str(cell)
 
@@ -149,10 +149,4 @@ def _middle(median: Any, q1: float, q3: float) -> str:
     """Write a median with its quartiles; alone if it is one value, or text."""
     if math.isnan(q1) or q1 == q3:
         return _text(median)
-    return _unbroken(middle(float(median), q1, q3))
-
-
-def _unbroken(text: str) -> str:
-    """Keep numbers whole in a narrow cell."""
-    text = text.replace("\N{THIN SPACE}", "\N{NARROW NO-BREAK SPACE}")
-    return text.replace("to ", "to\N{NO-BREAK SPACE}")
+    return middle(float(median), q1, q3).replace("to ", "to\N{NO-BREAK SPACE}")

@@ -136,12 +136,12 @@ def test_classes_count_instances_not_trials():
 
 
 def test_the_three_forms_of_a_table():
-    shown = pd.DataFrame({"A_b": ["x & y", "∞"], "B, %": ["1\N{THIN SPACE}000", "< 0.1"]})
+    shown = pd.DataFrame({"A_b": ["x & y", "∞"], "B, %": ["1\u202f000", "< 0.1"]})
     table = Table("name", "100 % of it", pd.DataFrame({"a": [1.5, math.inf]}), shown)
     assert table.csv() == "a\n1.5\ninf\n"
     markdown = table.markdown()
     assert "x & y" in markdown
-    assert "1\N{THIN SPACE}000" in markdown
+    assert "1\u202f000" in markdown
     latex = table.latex()
     for text in (r"A\_b", r"x \& y", r"$\infty$", r"1\,000", "$<$ 0.1", r"100 \% of it", "toprule"):
         assert text in latex
@@ -163,7 +163,7 @@ def test_of_very_many_rows_people_are_shown_the_first_and_told_so():
     assert len(table.shown) == len(table.runs) == 1000
     assert table.runs[-1] == ("k999",)
     said = "All of them. The first 1000 of 2500 rows; the CSV file has all."
-    assert table.caption.replace("\N{THIN SPACE}", "") == said
+    assert table.caption.replace("\u202f", "") == said
     assert "p999" in table.markdown() and "p1000" not in table.markdown() + table.latex()
     small = Table("name", "All of them.", data[:1000], data[:1000].astype(str))
     assert small.caption == "All of them."

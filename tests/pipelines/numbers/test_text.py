@@ -14,12 +14,19 @@ from gapath.pipelines.report.command import as_sweeps
     ("value", "shown"),
     [
         (0.0, "0"), (9.0, "9"), (5.5, "5.5"), (0.01234, "0.0123"), (43.06, "43.1"), (999.4, "999"),
-        (1234.5, "1\N{THIN SPACE}234"), (37525, "37\N{THIN SPACE}525"), (math.inf, "∞"),
+        (1234.5, "1\u202f234"), (37525, "37\u202f525"), (math.inf, "∞"),
         (math.nan, text.NOTHING), (0.5, "0.5"), (12.0001, "12"),
     ],
 )  # fmt: skip
 def test_number(value, shown):
     assert text.number(value) == shown
+
+
+@given(st.floats(-1e9, 1e9))
+def test_no_line_ends_within_a_number(value):
+    shown = text.number(value)
+    assert not set(shown) - set("-0123456789.\u202f")
+    assert text.span(value, value + 1e4).count(" ") == 2  # about "to"
 
 
 @given(st.floats(1e-9, 999.9))

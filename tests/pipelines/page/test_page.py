@@ -19,7 +19,7 @@ from gapath.pipelines.page.section import Table
 
 ROOT = Path(__file__).parents[3]
 VENDOR = ROOT / "pipelines" / "page" / "vendor"
-THIN, NARROW, FIXED = "\N{THIN SPACE}", "\N{NARROW NO-BREAK SPACE}", "\N{NO-BREAK SPACE}"
+NARROW, FIXED = "\N{NARROW NO-BREAK SPACE}", "\N{NO-BREAK SPACE}"
 
 
 @pytest.mark.parametrize(
@@ -57,7 +57,7 @@ def test_heads_are_in_every_row_and_marked_where_they_repeat():
         "Experiment": ["a", "a", "a", "b", "b"],
         "Map": ["m", "m", "n", "n", "n"],
         "Planner": ["x", "y", "y", "y", "y"],
-        "Time": ["1", "\N{EN DASH}", "∞", "1\N{THIN SPACE}000", "2 (1 to 3)"],
+        "Time": ["1", "\N{EN DASH}", "∞", "1\N{NARROW NO-BREAK SPACE}000", "2 (1 to 3)"],
     })  # fmt: skip
     rows = rows_of(Table("t", "T.", shown, shown, heads=3))
     assert [[cell.text for cell in row.cells] for row in rows] == shown.to_numpy().tolist()

@@ -111,7 +111,7 @@ def test_cells_are_for_people(bench):
         return [[cell.strip() for cell in line.split("|")[1:-1]] for line in text[2:]]
 
     fixed = "\N{NO-BREAK SPACE}"
-    low, middle, high = (f"1 234 {end}".replace(" ", "\N{NARROW NO-BREAK SPACE}")
+    low, middle, high = (f"1 234 {end}".replace(" ", "\u202f")
                          for end in (567, 568, 569))  # fmt: skip
     assert lines("visibility")[:2] == [
         ["a line", "skipped: no library"],
@@ -208,8 +208,8 @@ def frame(rows):
 
 def test_the_figures_say_where_nothing_was_found():
     figure = bench_figure_map_size.figure(frame(GROWTH))
-    assert "Map 3, GA 1: 20 to 1\N{THIN SPACE}234\N{THIN SPACE}568 us, found 100 %" in figure.alt
-    assert "Map 4, GA 3: 20 to 1\N{THIN SPACE}234\N{THIN SPACE}568 us, found 0 %" in figure.alt
+    assert "Map 3, GA 1: 20 to 1\u202f234\u202f568 us, found 100 %" in figure.alt
+    assert "Map 4, GA 3: 20 to 1\u202f234\u202f568 us, found 0 %" in figure.alt
     assert "Map 1, A*: 50 to" in figure.alt
     found = bench_figure_map_size.figure(frame([row | {"found": 1.0} for row in GROWTH]))
     assert found.svg != figure.svg

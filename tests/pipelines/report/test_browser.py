@@ -91,7 +91,7 @@ def texts(page, column, table=TABLE):
 
 def value(text):
     """The number that a cell shows; infinite where it shows none, as it comes last."""
-    return math.inf if text == "\N{EN DASH}" else float(text.replace("\N{THIN SPACE}", ""))
+    return math.inf if text == "\N{EN DASH}" else float(text.replace("\u202f", ""))
 
 
 def sort(page, column, state, table=TABLE, press="click"):
