@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import yaml
 
 from gapath.discovery import yaml_names, yaml_values
-from gapath.store.settings import Value, flatten
+from gapath.store.settings import Value, flatten, written
 
 if TYPE_CHECKING:
     from gapath.task import Task  # which takes long, and is not needed to write names
@@ -133,5 +133,5 @@ def _changes(given: Mapping[str, Value], usual: Mapping[str, Value]) -> dict[str
 
 def with_changes(name: str, changes: Iterable[tuple[str, Value]]) -> str:
     """Write a name and, in brackets behind it, what differs: for people, nobody reads it back."""
-    shown = sorted(f"{key}={value}" for key, value in changes)
+    shown = sorted(f"{key}={written(value)}" for key, value in changes)
     return f"{name}[{','.join(shown)}]" if shown else name

@@ -191,6 +191,11 @@ def of_text(text: str) -> dict[str, Value]:
     return settings
 
 
+def written(value: Value) -> str:
+    """Write a setting's value for people, as YAML has it: null, true, text without quotes."""
+    return json.dumps(value) if value is None or isinstance(value, bool) else str(value)
+
+
 def read_settings(path: Path) -> dict[str, Value]:
     """Read a run folder's ``config.yaml``.
 

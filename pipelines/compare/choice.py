@@ -1,6 +1,5 @@
 """Which runs stand in which group, and what pairs their trials."""
 
-import json
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -16,7 +15,7 @@ from gapath.pipelines.reading.frame import chosen, run_frame
 from gapath.pipelines.reading.names import tried_with_contents
 from gapath.pipelines.reading.query import near
 from gapath.store.records import RunRecord, find_runs
-from gapath.store.settings import Value, tabular
+from gapath.store.settings import Value, tabular, written
 from gapath.task import Task, find_task
 
 _OWN = ("method", "preset", "experiment", "map", "map_instance", "start", "target", "seed")
@@ -193,9 +192,7 @@ def _in_order(values: set[Any], by: str) -> list[Any]:
 def _shown(value: Any, by: str) -> str:
     if by in _NAMES:
         return label(str(value))
-    if value is None or isinstance(value, bool):
-        return json.dumps(value)
-    return f"{value:.12g}" if isinstance(value, float) else str(value)
+    return f"{value:.12g}" if isinstance(value, float) else written(value)
 
 
 def _mentioned(setting: str, wheres: Sequence[str]) -> bool:

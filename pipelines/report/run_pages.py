@@ -24,6 +24,7 @@ from gapath.pipelines.report.stills import MOST_BYTES, MOST_RUNS, newest_logs, s
 from gapath.recorders.mcap import FILE
 from gapath.store.durable import write_whole
 from gapath.store.records import MANIFEST, RunRecord
+from gapath.store.settings import written
 from gapath.store.status import STATUS
 from gapath.task import columns, find_task
 
@@ -211,7 +212,7 @@ def _pages(
             shown=min(known.trials, MOST_TRIALS),
             trials=known.trials,
             lines=_lines(rows[key]),
-            settings=[(name, _value(value)) for name, value in run.settings.items()],
+            settings=[(name, written(value)) for name, value in run.settings.items()],
             provenance=_provenance(run),
         )
         yield f"{key}.html", text
@@ -226,12 +227,6 @@ def _no_stills(run: RunRecord) -> str:
     )
 
 
-def _value(value: object) -> str:
-    return (
-        "null" if value is None else str(value).lower() if isinstance(value, bool) else str(value)
-    )
-
-
 def _what(run: RunRecord, method: str, rate: float) -> list[tuple[str, str]]:
     known = run.known
     what = [
@@ -241,7 +236,7 @@ def _what(run: RunRecord, method: str, rate: float) -> list[tuple[str, str]]:
         ("start, target", f"{known.start}, {known.target}" + (ONE_OF if known.queries else "")),
         (method, label(known.method)),
         ("preset", known.preset),
-        *((f"changed: {name}", _value(value)) for name, value in known.changes.items()),
+        *((f"changed: {name}", written(value)) for name, value in known.changes.items()),
         ("seed", str(known.seed)),
         ("trials", number(known.trials)),
         ("succeeded", f"{percent(rate)} %"),

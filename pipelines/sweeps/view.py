@@ -12,7 +12,7 @@ from gapath.pipelines.papers.names import label, rank
 from gapath.pipelines.sweeps.cells import Cells, summarise_cells
 from gapath.pipelines.sweeps.measures import Effort, Measures
 from gapath.pipelines.sweeps.varied import Factor, Sweep
-from gapath.store.settings import Value
+from gapath.store.settings import Value, written
 
 EVERYWHERE = "all"
 """The place of what is about all maps together."""
@@ -135,15 +135,10 @@ def _known(measures: Measures, cells: pd.DataFrame) -> Measures:
 
 def text(value: Value) -> str:
     """Write a setting's value, or what a method is called, for people."""
-    if value is None:
-        return "null"
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, int | float):
-        return f"{value:g}"
-    return label(
-        value if len(value) <= _LETTERS else f"{value[: _LETTERS - 1]}\N{HORIZONTAL ELLIPSIS}"
-    )
+    if isinstance(value, str):
+        long = len(value) > _LETTERS
+        return label(f"{value[: _LETTERS - 1]}\N{HORIZONTAL ELLIPSIS}" if long else value)
+    return written(value) if value is None or isinstance(value, bool) else f"{value:g}"
 
 
 def sentence(view: View) -> str:

@@ -4,7 +4,7 @@ import pytest
 
 from gapath.components import build
 from gapath.discovery import yaml_values
-from gapath.running.naming import map_name, method_of
+from gapath.running.naming import Method, map_name, method_of
 from gapath.tasks import drive as driving
 
 
@@ -54,6 +54,11 @@ def test_what_is_known_beforehand_is_named_by_its_folder():
     method = method_of(driving.Task, config | {"corner_cutting": "allow"}, {"navigator": "kg18"})
     name = method.name
     assert name == "kg18[known_map=office_without_rooms]"
+
+
+def test_a_value_is_spelt_as_in_tables_and_yaml():
+    changes = {"planner.repair": None, "planner.informed": True, "planner.share": 0.5}
+    assert Method("ga3", changes).name == "ga3[informed=true,repair=null,share=0.5]"
 
 
 @pytest.mark.parametrize(
