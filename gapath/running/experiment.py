@@ -146,6 +146,7 @@ def _execute_held(run: Run, folder: RunFolder, command: str, progress: bool) -> 
     try:
         config = yaml.safe_dump(nested(run.settings), sort_keys=False, allow_unicode=True)
         write_whole(folder.path / CONFIG, config.encode())
+        _manifest(run, folder, command, [], {}).write(folder)  # what it is, should it be killed
         with watched() as read:
             optimum = run.task.optimum(run.problem)
             rows, recorded = _do_trials(run, optimum, folder, progress)

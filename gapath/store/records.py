@@ -30,7 +30,7 @@ class FileEntry:
 
 @dataclass(frozen=True)
 class Manifest:
-    """What was run, and which files came of it: ``manifest.json``.
+    """What is run, and which files came of it: ``manifest.json``.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class Manifest:
         Those that were read only while trials ran: no part of what was tried, since a library may
         read them once a process, but the run is done anew where one has changed.
     files : mapping of str to FileEntry
-        All files but the manifest and the status.
+        All files but the manifest and the status; none until the run is finished.
     settings : mapping of str to str, int, float, bool or None
         The settings, flat. Who reads runs reads them here; ``config.yaml`` says the same to
         people, and is read for what earlier versions made: then None stands here.
@@ -134,7 +134,6 @@ class Manifest:
         where = f"{MANIFEST}, files"
         for name in found.files:
             require("/" not in name, where, name, "a name within the folder")
-        require(TRIALS in found.files, where, sorted(found.files), TRIALS)
         return found
 
 
@@ -204,6 +203,7 @@ def read_record(folder: Path) -> RunRecord:
     manifest, fault = None, ""
     try:
         manifest = Manifest.read(folder)
+        require(TRIALS in manifest.files, f"{MANIFEST}, files", [*manifest.files], TRIALS)
         for name, entry in sorted(manifest.files.items()):
             size = _size(f"{folder}/{name}")
             if size != entry.bytes:

@@ -55,7 +55,7 @@ def run_frame(runs: Sequence[RunRecord]) -> pd.DataFrame:
 
 def described(runs: Sequence[RunRecord]) -> tuple[pd.DataFrame, list[Results | None]]:
     """Make a table of runs as `run_frame` does, and give what each of them came to."""
-    older = any(run.manifest and not run.manifest.results for run in runs)  # which takes longer
+    older = any(not run.fault and not run.known.results for run in runs)  # which takes longer
     pairs = [_with_results(run) for run in tqdm(runs, "runs", disable=None if older else True)]
     came = [results for _, results in pairs]
     settings = [_settings(run) for run, _ in pairs]

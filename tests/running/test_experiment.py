@@ -24,6 +24,7 @@ from gapath.running import config
 from gapath.running.experiment import execute, replay_events
 from gapath.running.naming import Method
 from gapath.store import keys, records, runfolder, whole
+from gapath.store.records import Manifest
 from gapath.store.settings import flatten, read_settings
 from gapath.tasks.plan import Task as PlanTask
 
@@ -165,7 +166,10 @@ def test_a_killed_run_leaves_nothing_that_looks_whole(tmp_path):
     (folder,) = (tmp_path / "test").iterdir()
     assert json.loads((folder / "status.json").read_bytes())["state"] == "running"
     assert not (folder / "run.mcap").exists()
-    assert not (folder / "manifest.json").exists()
+    known = Manifest.read(folder)  # what it was
+    assert (known.map, known.method, known.trials, known.files) == (
+        "kg18_test4", "ga1", 100_000, {},
+    )  # fmt: skip
     with runfolder.RunFolder(folder).lock():  # nobody holds it: the run is dead
         assert not whole.is_whole(runfolder.RunFolder(folder))
     saved = tmp_path / "saved.mcap"
