@@ -20,7 +20,7 @@ from typing import Any
 
 import yaml
 
-from gapath.errors import InputError, one_of, require, require_all
+from gapath.errors import FAULTS, InputError, one_of, require, require_all
 
 PACKAGES = {
     "map": "gapath.mapio",
@@ -166,7 +166,7 @@ def imported(entry: metadata.EntryPoint) -> ModuleType:
     """
     try:
         return importlib.import_module(entry.value)
-    except Exception as error:  # what it does when imported is its own
+    except FAULTS as error:  # what it does when imported is its own
         where = f"entry point {entry.group}: {entry.name} = {entry.value}"
         raise InputError(where, repr(error), "a module that can be imported") from error
 

@@ -6,6 +6,9 @@ from typing import Any
 MOST_MEMORY = 1 << 30
 """Bytes that a planner's settings may ask for."""
 
+FAULTS = (Exception, SystemExit)
+"""What is a component's fault where it raises it: it must not end the process by itself, either."""
+
 
 class InputError(ValueError):
     """A file, a field or a value that a user gave cannot be used.

@@ -38,12 +38,12 @@ def arguments() -> argparse.Namespace:
     return given
 
 
-def explain(error: Exception, words: Sequence[str], sweep: bool) -> str | None:
+def explain(error: BaseException, words: Sequence[str], sweep: bool) -> str | None:
     """Say what is wrong with a command line.
 
     Parameters
     ----------
-    error : Exception
+    error : BaseException
         What was raised.
     words : sequence of str
         What was set on the command line, ``key=value`` each.
@@ -70,14 +70,14 @@ def explain(error: Exception, words: Sequence[str], sweep: bool) -> str | None:
     return ": ".join(lines) or type(error).__name__
 
 
-def _hydras_own(error: Exception) -> bool:
+def _hydras_own(error: BaseException) -> bool:
     """Tell whether Hydra stumbled itself, over a YAML of a shape that it does not expect."""
     places = traceback.extract_tb(error.__traceback__)
     known = isinstance(error, BAD_CONFIGURATION)
     return not known and bool(places) and "hydra" in Path(places[-1].filename).parts
 
 
-def _found(error: Exception, words: Sequence[str], sweep: bool) -> InputError | None:
+def _found(error: BaseException, words: Sequence[str], sweep: bool) -> InputError | None:
     """Find the setting that an error of Hydra's is about, and what would be right."""
     if isinstance(error, MissingConfigException) and "/" in (error.missing_cfg_file or ""):
         group, _, name = error.missing_cfg_file.rpartition("/")

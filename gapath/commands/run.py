@@ -23,7 +23,7 @@ from omegaconf import DictConfig, OmegaConf
 import gapath
 from gapath.commands.refusal import BAD_CONFIGURATION, arguments, explain
 from gapath.discovery import component_of, conf_packages, kinds, yaml_names
-from gapath.errors import InputError, require
+from gapath.errors import FAULTS, InputError, require
 from gapath.running.config import HOW, Run, conf_folder, make_run
 from gapath.running.experiment import Execution, execute, run_folder
 from gapath.store.runfolder import RunFolder
@@ -71,7 +71,7 @@ class SweepCheck(Callback):  # type: ignore[misc]
                 check_apart(run_folder(run).path, words, folders)
             for folder in folders:
                 RunFolder(folder).create_parent()
-        except Exception as error:
+        except FAULTS as error:
             sys.exit(refuse(error, words, sweep=True))
         # Hydra would compose every job once more, only to see whether it can be composed.
         BasicSweeper.validate_batch_is_legal = lambda self, batch: None
@@ -99,7 +99,7 @@ def job(config: DictConfig) -> int:
         check_own(hydra.runtime)
         run = make_run(config, hydra.runtime.choices, settings_of(words))
         execution = execute(run, command(words, hydra.runtime.config_sources))
-    except Exception as error:
+    except FAULTS as error:
         return refuse(error, words, sweep)
     try:
         print(describe(run, execution, short=sweep), flush=True)
@@ -161,12 +161,12 @@ def command(words: Sequence[str], sources: Sequence[Mapping[str, str]]) -> str:
     return shlex.join(["gapath", *(f"--config-dir={path}" for path in own), *kept])
 
 
-def refuse(error: Exception, words: Sequence[str], sweep: bool) -> int:
+def refuse(error: BaseException, words: Sequence[str], sweep: bool) -> int:
     """Tell in one line why something cannot be done, and give the exit code.
 
     Parameters
     ----------
-    error : Exception
+    error : BaseException
         What was raised. One that is no `BAD_CONFIGURATION` and not the system's is a fault of
         some component: once a run has begun, its traceback is in ``status.json``.
     words : sequence of str

@@ -13,7 +13,9 @@ import pytest
 from PIL import Image
 
 from gapath.commands import run as cli
+from gapath.pipelines.reading.frame import run_frame
 from gapath.store import runfolder
+from gapath.store.records import find_runs
 
 OPEN = "type octile\nheight 3\nwidth 5\nmap\n.....\n.....\n.....\n"
 WALLED = "type octile\nheight 3\nwidth 5\nmap\n..@..\n..@..\n..@..\n"
@@ -76,10 +78,11 @@ def test_a_run_that_another_process_holds_is_left_alone(gapath, tmp_path):
         assert "another process" in gapath(*run, "force=true")[1]
 
 
-def test_a_sweep_does_every_setting_and_goes_on_after_a_failure(gapath, tmp_path, monkeypatch):
+@pytest.mark.parametrize("kind", [RuntimeError, SystemExit])
+def test_a_sweep_does_every_setting_and_goes_on_after_a_failure(gapath, monkeypatch, kind):
     def fail(run, command):
         if run.method.name == "ga1[population=8]":
-            raise RuntimeError("no luck")
+            raise kind("no luck")
         return execute(run, command)
 
     execute = cli.execute
@@ -93,7 +96,7 @@ def test_a_sweep_does_every_setting_and_goes_on_after_a_failure(gapath, tmp_path
         "trials=3",
     )
     assert code == 1
-    assert "gapath: RuntimeError: no luck (test_cli.py, line " in errors
+    assert f"gapath: {kind.__name__}: no luck (test_cli.py, line " in errors
     lines = [line for line in text.splitlines() if "of 3 found" in line]
     assert [line.split(":")[0].split()[1] for line in lines] == [
         "ga1[population=12]",
@@ -120,19 +123,34 @@ def test_the_same_file_with_other_settings_is_another_map(gapath, tmp_path):
     assert {row["map"] for row in rows} == {"open", "open[free_weight=0.25]"}
 
 
-def test_a_failing_run_says_so_in_its_folder(gapath, tmp_path, monkeypatch):
-    monkeypatch.setattr("gapath.tasks.plan.plan_trials", lambda *given: 1 / 0)
+@pytest.mark.parametrize(
+    ("fault", "said"),
+    [
+        (lambda *given: 1 / 0, "ZeroDivisionError: division by zero"),
+        (lambda *given: sys.exit(0), "SystemExit: 0"),
+        (lambda *given: sys.exit(), "SystemExit:"),
+    ],
+)
+def test_a_failing_run_says_so_in_its_folder(gapath, tmp_path, monkeypatch, fault, said):
+    monkeypatch.setattr("gapath.tasks.plan.plan_trials", fault)
     code, _, errors = gapath("map=kg18_test1")
     assert code == 1
     folder = only(tmp_path / "out" / "plan")
     assert re.fullmatch(
-        r"gapath: task plan: ZeroDivisionError: division by zero \(test_cli.py, line \d+\); "
+        rf"gapath: task plan: {said} \(test_cli.py, line \d+\); "
         f"the traceback is in {folder}/status.json\n",
         errors,
     )
     status = json.loads((folder / "status.json").read_bytes())
     assert status["state"] == "failed"
-    assert "ZeroDivisionError" in status["message"]
+    assert said.rstrip(":") in status["message"]
+
+
+def test_a_sweep_whose_check_is_ended_by_a_component_says_so(gapath, monkeypatch):
+    monkeypatch.setattr(cli, "make_run", lambda *given: sys.exit(0))
+    code, text, errors = gapath("-m", "map=kg18_test1,kg18_test2", "planner=astar")
+    assert (code, text) == (1, "")
+    assert re.fullmatch(r"gapath: SystemExit: 0 \(test_cli.py, line \d+\)\n", errors)
 
 
 def test_an_interrupted_run_says_so(gapath, tmp_path, monkeypatch):
@@ -140,10 +158,18 @@ def test_an_interrupted_run_says_so(gapath, tmp_path, monkeypatch):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("gapath.tasks.plan.plan_trials", interrupt)
-    assert gapath("map=kg18_test1")[0] == cli.INTERRUPTED
+    run = ("map=kg18_test1", "planner=ga1", "planner.population=60", "seed=7", "trials=5")
+    assert gapath(*run)[0] == cli.INTERRUPTED
     folder = only(tmp_path / "out" / "plan")
     assert json.loads((folder / "status.json").read_bytes())["state"] == "interrupted"
-    assert not (folder / "manifest.json").exists()
+    (listed,) = run_frame(find_runs(tmp_path / "out")).to_dict("records")
+    assert {name: listed[name] for name in ("map", "method", "seed", "trials", "fault")} == {
+        "map": "kg18_test1", "method": "ga1[population=60]", "seed": 7, "trials": 5,
+        "fault": "interrupted",
+    }  # fmt: skip
+    monkeypatch.undo()
+    monkeypatch.chdir(tmp_path)
+    assert "skipped" not in gapath(*run)[1]
 
 
 @pytest.mark.parametrize(
