@@ -168,11 +168,15 @@ def render(canvas: Canvas) -> tuple[bytes, bytes]:
     """
     _raise_powers(canvas)
     files = []
-    for kind, metadata in (("svg", {"Date": None, "Creator": None}), ("png", {"Software": None})):
-        stream = io.BytesIO()
-        canvas.savefig(stream, format=kind, dpi=200, metadata=metadata, bbox_inches="tight")
-        files.append(stream.getvalue())
+    with matplotlib.rc_context({"text.parse_math": True}):  # of ticks that are made meanwhile
+        for kind, metadata in _FILES.items():
+            stream = io.BytesIO()
+            canvas.savefig(stream, format=kind, dpi=200, metadata=metadata, bbox_inches="tight")
+            files.append(stream.getvalue())
     return files[0], files[1]
+
+
+_FILES = {"svg": {"Date": None, "Creator": None}, "png": {"Software": None}}
 
 
 def _raise_powers(canvas: Canvas) -> None:
@@ -182,12 +186,9 @@ def _raise_powers(canvas: Canvas) -> None:
             (axis.get_major_formatter(), axis.get_major_ticks),
             (axis.get_minor_formatter(), axis.get_minor_ticks),
         ):
-            for tick in ticks(_TICKS) if isinstance(formatter, LogFormatterMathtext) else ():
-                tick.label1.set_parse_math(True)
+            for tick in ticks():  # elsewhere they are made, before powers are allowed
+                tick.label1.set_parse_math(isinstance(formatter, LogFormatterMathtext))
 
-
-_TICKS = 40
-"""An axis has no more with a label."""
 
 _SCHEME = (
     f"svg{{--i:{INK};--p:#ffffff;--g:{GRID}}}"

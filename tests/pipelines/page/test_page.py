@@ -172,7 +172,9 @@ def test_powers_of_ten_are_formulas_along_logarithmic_axes_though_names_are_none
 
     assert drawn() == drawn(**{"text.parse_math": True})
     with style():
-        canvas, (panel,) = panels(1, height=2)
+        canvas, (panel, other) = panels(2, height=2, same_axes=False)
         panel.set(title="a$b_$x", xscale="log")
+        panel.set_yticks(range(3), labels=["c$d_$y"] * 3)
+        other.plot(["e$f_$z", "g$h_$z"], [1, 2])
         svg, _ = render(canvas)
-    assert b"a$b_$x" in svg
+    assert [svg.count(name) for name in (b"a$b_$x", b"c$d_$y", b"$z")] == [1, 3, 2]
