@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from gapath.events import Event, RunStarted, TrialFinished
 from gapath.pictures.board import draw_map, map_legend, mark_ends
 from gapath.pipelines.numbers.text import number
-from gapath.pipelines.page.figures import INK, WIDTH, Look, looks, render, style
+from gapath.pipelines.page.figures import BETWEEN, WIDTH, Look, looks, render, style
 from gapath.pipelines.page.section import RECONSTRUCTED, Figure, Section
 from gapath.pipelines.papers.names import label, rank
 from gapath.pipelines.reading.logs import events_of, read_logs, run_start
@@ -110,8 +110,8 @@ def _figure(examples: dict[str, Found], look: dict[str, Look]) -> Figure:
         axes = canvas.subplots()
         draw_map(axes, grid.weights)
         handles: list[Artist] = [*map_legend(grid.weights)]
-        axes.plot(*start.optimal_path.T, color="black", linestyle=":")
-        handles.append(Line2D([], [], color=INK, linestyle=":", label="optimal"))
+        axes.plot(*start.optimal_path.T, color=BETWEEN, linestyle=":")
+        handles.append(Line2D([], [], color=BETWEEN, linestyle=":", label="optimal"))
         for planner, (color, dashes) in look.items():
             paths = examples[planner].paths if planner in examples else []
             name = label(planner) if paths else f"{label(planner)}: none found"

@@ -24,6 +24,10 @@ INK, PAPER, GRID = "#000001", "#fffffe", "#e6e6e6"
 """Black, white and grey that a page shows in its own colours: what is drawn in other ones, also in
 plain black and white, looks the same on every page."""
 
+BETWEEN = "#767676"
+"""Grey that shows on light and on dark: of a line on a map, which looks the same on every page, and
+in the legend beside it."""
+
 _STYLE = {
     "figure.facecolor": PAPER,
     "axes.facecolor": PAPER,
@@ -60,7 +64,7 @@ _LOOKS = (
     Look("#D55E00", (0, (5, 1.5))),
     Look("#009E73", (0, (1.5, 1))),
     Look("#CC79A7", (0, (6, 1.5, 1.5, 1.5))),
-    Look(INK, (0, (3, 3))),
+    Look(BETWEEN, (0, (3, 3))),
     Look("#56B4E9", (0, (8, 2))),
     Look("#E69F00", (0, (4, 1, 1, 1, 1, 1))),
 )

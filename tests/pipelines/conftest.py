@@ -7,6 +7,8 @@ from typing import Any
 import pandas as pd
 import pytest
 import yaml
+from matplotlib.colors import to_hex
+from matplotlib.lines import Line2D
 
 from gapath.pipelines.reading.collect import Collected, read_trials
 from gapath.running.naming import Method
@@ -38,6 +40,17 @@ from .synthetic import (
 )
 
 DATE = "2026-01-01T12:00:00"
+
+
+def colours_of_lines(module, case, monkeypatch):
+    """The colours of lines on maps that a module draws, and of those in the legends beside them."""
+    canvases = []
+    monkeypatch.setattr(module, "render", lambda canvas: canvases.append(canvas) or (b"", b""))
+    module.section(*case)
+    on_maps = [line for canvas in canvases for axes in canvas.axes for line in axes.lines]
+    handles = [each for canvas in canvases for box in canvas.legends for each in box.legend_handles]
+    in_legends = [each for each in handles if isinstance(each, Line2D)]
+    return [{to_hex(line.get_color()) for line in lines} for lines in (on_maps, in_legends)]
 
 
 def collect(folder: Path) -> Collected:

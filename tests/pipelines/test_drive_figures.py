@@ -3,10 +3,11 @@ import pytest
 from gapath.errors import InputError
 from gapath.events import Outcome, Stepped
 from gapath.pipelines.kg18.drives import figure_paths, figure_ratios, figure_times
+from gapath.pipelines.page.figures import GRID, INK, PAPER
 from gapath.recorders.mcap import FILE, read_events
 from gapath.store.records import find_runs
 
-from .conftest import collect
+from .conftest import collect, colours_of_lines
 
 FIGURES = (figure_times, figure_paths, figure_ratios)
 
@@ -71,3 +72,9 @@ def test_histograms_state_their_failures(case):
 def test_without_drives_of_kg18_there_is_no_figure(case, module):
     trials, _ = case
     assert module.section(trials[trials["navigator"] == "dstar_lite"], []) is None
+
+
+def test_a_line_on_a_map_is_that_of_the_legend_on_every_page(case, monkeypatch):
+    on_maps, in_legends = colours_of_lines(figure_paths, case, monkeypatch)
+    assert on_maps == in_legends
+    assert not on_maps & {INK, PAPER, GRID}  # the page has its own

@@ -6,11 +6,11 @@ from hypothesis import strategies as st
 from gapath.errors import InputError
 from gapath.events import TrialFinished
 from gapath.pipelines.kg18 import figure_convergence, figure_evaluations, figure_paths
-from gapath.pipelines.page.figures import looks
+from gapath.pipelines.page.figures import GRID, INK, PAPER, looks, looks_of
 from gapath.problem import PlanStatus
 from gapath.store.records import find_runs
 
-from .conftest import collect
+from .conftest import collect, colours_of_lines
 
 
 @pytest.fixture(scope="module")
@@ -85,3 +85,13 @@ def test_a_planner_looks_the_same_in_all_figures_of_an_experiment():
     assert looks(names) == looks(reversed(names))
     assert len({look.color for look in looks(names).values()}) == 5
     assert list(looks(names))[:3] == ["ga1", "ga2", "ga3"]
+
+
+def test_whatever_is_drawn_on_a_map_shows_on_every_page():
+    assert not {look.color for look in looks_of("abcdefghij").values()} & {INK, PAPER, GRID}
+
+
+def test_a_line_on_a_map_is_that_of_the_legend_on_every_page(case, monkeypatch):
+    on_maps, in_legends = colours_of_lines(figure_paths, case, monkeypatch)
+    assert on_maps == in_legends
+    assert not on_maps & {INK, PAPER, GRID}  # the page has its own

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from gapath.events import DriveFinished, Event, Outcome, RunStarted, Stepped
 from gapath.pictures.board import draw_map, map_legend, mark_ends
-from gapath.pipelines.page.figures import INK, WIDTH, render, style
+from gapath.pipelines.page.figures import BETWEEN, WIDTH, render, style
 from gapath.pipelines.page.section import RECONSTRUCTED, Figure, Section
 from gapath.pipelines.papers.names import label, rank
 from gapath.pipelines.reading.logs import events_of, read_logs, run_start
@@ -141,8 +141,8 @@ def _figure(examples: dict[str, Driven]) -> Figure:
         draw_map(axes, grid.weights)
         handles: list[Artist] = [*map_legend(grid.weights)]
         if len(start.optimal_path):
-            axes.plot(*start.optimal_path.T, color="black", linestyle=":")
-            handles.append(Line2D([], [], color=INK, linestyle=":", label="shortest"))
+            axes.plot(*start.optimal_path.T, color=BETWEEN, linestyle=":")
+            handles.append(Line2D([], [], color=BETWEEN, linestyle=":", label="shortest"))
         for navigator in sorted(examples, key=rank):
             for trail in examples[navigator].trails:
                 reached = trail.outcome is Outcome.REACHED
