@@ -40,6 +40,11 @@ def half_up(value):
     return floor(value + Fraction(1, 2))
 
 
+def half_up_ratio(a, b):
+    """`half_up` of a / b, which is floor((2 a + b) / 2 b), without making a fraction of it."""
+    return (2 * a + b) // (2 * b)
+
+
 def curve_point(points, u):
     """De Boor's corner cutting on the clamped, equidistant knots of eq. (2)."""
     k = len(points)
@@ -67,9 +72,8 @@ def polyline(points):
     for (x0, y0), (x1, y1) in itertools.pairwise(points):
         n = max(abs(x1 - x0), abs(y1 - y0))
         for i in range(1, n + 1):
-            fields.append(
-                (half_up(x0 + Fraction(i * (x1 - x0), n)), half_up(y0 + Fraction(i * (y1 - y0), n)))
-            )
+            x, y = x0 + half_up_ratio(i * (x1 - x0), n), y0 + half_up_ratio(i * (y1 - y0), n)
+            fields.append((x, y))
     return fields
 
 
