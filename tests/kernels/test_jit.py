@@ -24,38 +24,63 @@ def twice(x):
 def outer(x):
     return twice(helper(x))
 """
-CALL = "from {} import outer; print(outer({}), len(outer.stats.cache_hits))"
+CALLS = """
+import sys
+from importlib import import_module
+for argument in {}:
+    outer = import_module("{}planner").outer
+    print(outer(argument), len(outer.stats.cache_hits))
+    del sys.modules["{}planner"], sys.modules["{}helpers"]
+"""
 
 
-def call(folder, prefix="", argument=1, before=None):
-    """Call `outer` in a process of its own; give its result and how many caches served it."""
+def call(folder, prefix="", arguments=(1,), before=None):
+    """Call `outer` in a process of its own, each time read anew from the files.
+
+    Gives its results, each with how many caches served it.
+    """
     process = subprocess.run(
-        [sys.executable, "-c", CALL.format(f"{prefix}planner", argument)],
+        [sys.executable, "-c", CALLS.format(arguments, prefix, prefix, prefix)],
         env=os.environ | {"NUMBA_CACHE_DIR": str(folder / "cache")},
         cwd=folder,
         capture_output=True,
         text=True,
         preexec_fn=before,
     )
-    return process.stdout.split() or process.stderr or process.returncode
+    return (
+        [line.split() for line in process.stdout.splitlines()]
+        or process.stderr
+        or process.returncode
+    )
+
+
+def write_kernels(folder, prefix=""):
+    (folder / "planner.py").write_text(OUTER.format(f"{prefix}helpers"))
+    (folder / "helpers.py").write_text(HELPER.format(1))
+    return folder
 
 
 @pytest.fixture
 def kernels(tmp_path):
-    (tmp_path / "planner.py").write_text(OUTER.format("helpers"))
-    (tmp_path / "helpers.py").write_text(HELPER.format(1))
-    return tmp_path
+    return write_kernels(tmp_path)
+
+
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory):
+    """Kernels that were compiled once, and are whole again after each test."""
+    folder = write_kernels(tmp_path_factory.mktemp("kept"))
+    assert call(folder) == [["4", "0"]]
+    return folder
 
 
 @pytest.mark.parametrize("package", ["", "plugin"])
 def test_an_edited_helper_of_a_plug_in_is_noticed(tmp_path, package):
     folder, prefix = tmp_path / package, f"{package}." if package else ""
     folder.mkdir(exist_ok=True)
-    (folder / "planner.py").write_text(OUTER.format(f"{prefix}helpers"))
-    (folder / "helpers.py").write_text(HELPER.format(1))
-    assert [call(tmp_path, prefix), call(tmp_path, prefix)] == [["4", "0"], ["4", "1"]]
+    write_kernels(folder, prefix)
+    assert call(tmp_path, prefix, (1, 1)) == [["4", "0"], ["4", "1"]]
     (folder / "helpers.py").write_text(HELPER.format(2))
-    assert call(tmp_path, prefix) == ["6", "0"]
+    assert call(tmp_path, prefix) == [["6", "0"]]
 
 
 def flipped(content):
@@ -76,32 +101,31 @@ def flipped(content):
         ("nbc", flipped),
     ],
 )
-def test_a_damaged_file_is_compiled_and_written_again(kernels, ending, damage):
-    assert call(kernels) == ["4", "0"]
-    files = list((kernels / "cache").rglob(f"*.{ending}"))
+def test_a_damaged_file_is_compiled_and_written_again(kept, ending, damage):
+    files = list((kept / "cache").rglob(f"*.{ending}"))
     assert files
     for file in files:
         file.write_bytes(damage(file.read_bytes()))
-    assert [call(kernels), call(kernels)] == [["4", "0"], ["4", "1"]]
+    assert call(kept, arguments=(1, 1)) == [["4", "0"], ["4", "1"]]
 
 
 def test_a_lost_index_gives_no_signature_the_code_of_another(kernels):
-    assert call(kernels, argument=1.5) == ["5.0", "0"]
+    assert call(kernels, arguments=(1.5,)) == [["5.0", "0"]]
     (code,) = (kernels / "cache").rglob("planner.outer*.nbc")
     before = code.read_bytes()
     for index in (kernels / "cache").rglob("*.nbi"):
         index.unlink()
-    assert call(kernels, argument=1) == ["4", "0"]
+    assert call(kernels) == [["4", "0"]]
     code.write_bytes(before)  # as if the disk had been full after the index was written
-    assert call(kernels, argument=1) == ["4", "0"]
+    assert call(kernels) == [["4", "0"]]
 
 
 def test_a_cache_that_cannot_be_written_is_no_error(kernels):
     def full():
         resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
 
-    assert [call(kernels, before=full)] * 2 == [["4", "0"]] * 2
+    assert call(kernels, arguments=(1, 1), before=full) == [["4", "0"]] * 2
     assert not [path for path in (kernels / "cache").rglob("*") if path.is_file()]
     (kernels / "cache").rename(kernels / "old")
     (kernels / "cache").write_text("no folder")
-    assert [call(kernels)] * 2 == [["4", "0"]] * 2
+    assert call(kernels, arguments=(1, 1)) == [["4", "0"]] * 2
