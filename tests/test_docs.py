@@ -3,6 +3,7 @@
 import re
 import runpy
 import shlex
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 
@@ -213,7 +214,7 @@ def check_report(words):
 
 
 def check_gapath(words):
-    """Compose every job of a command and make its parts; only maps with files are read."""
+    """Check every job of a command."""
     given = get_args_parser().parse_args(words)
     if given.shell_completion or given.help:
         return
@@ -223,14 +224,20 @@ def check_gapath(words):
             parsed = OverridesParser.create().parse_overrides(given.overrides)
             jobs = BasicSweeper.split_arguments(parsed, None)[0]
         for overrides in jobs:
-            loose = OmegaConf.to_container(compose("config", overrides=overrides))
-            root, chosen = config.split(loose)
-            made = find_task(root.task).make(chosen)
-            for name, values in root.recorder.items():
-                components.build("recorder", values, f"recorder.{name}")
-            components.build("map", root.map, "map")
-            if "path" in root.map:
-                config.read_problem(root, made, {})
+            check_job(tuple(overrides))
+
+
+@cache  # pages show the same ones
+def check_job(overrides):
+    """Compose a job and make its parts; only maps with files are read."""
+    loose = OmegaConf.to_container(compose("config", overrides=list(overrides)))
+    root, chosen = config.split(loose)
+    made = find_task(root.task).make(chosen)
+    for name, values in root.recorder.items():
+        components.build("recorder", values, f"recorder.{name}")
+    components.build("map", root.map, "map")
+    if "path" in root.map:
+        config.read_problem(root, made, {})
 
 
 def check_genotype(words):
