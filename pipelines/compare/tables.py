@@ -189,7 +189,7 @@ def table_by_map(
         One row a map, its start and target, and group; instances of a class of maps together.
     """
     places = ["map", "map_source", "start", "target"]
-    parts = list(trials.groupby(places, sort=False))
+    parts = list(trials.groupby(places, sort=True))
     if len(parts) < 2:
         return None
     data, text = [], []

@@ -129,7 +129,8 @@ def side_by_side(
     """
     columns = [*PROBLEM, "seed", *also]
     runs = trials.drop_duplicates("key").set_index("key")
-    tried = runs.groupby(columns, dropna=False, sort=False).ngroup()
+    # In order: intervals draw blocks by their place, and the order of runs is that of their keys.
+    tried = runs.groupby(columns, dropna=False, sort=True).ngroup()
     frame = pd.DataFrame(
         {
             "run": trials["key"].map(tried).to_numpy(),
@@ -140,10 +141,11 @@ def side_by_side(
     )
     once = ~frame.duplicated(keep="last")
     frame, kept = frame[once], trials[once]
-    block = frame.groupby(["run", "trial"], sort=False).ngroup().to_numpy()
+    block = frame.groupby(["run", "trial"], sort=True).ngroup().to_numpy()
     blocks = len(np.unique(block)) < len(block)
     if not blocks:  # a row for each trial would be much of nothing
-        block = frame.groupby("group").cumcount().to_numpy()
+        place = frame.sort_values(["run", "trial"], kind="stable").groupby("group").cumcount()
+        block = place[frame.index].to_numpy()
     names = tuple(str(name) for name in group.cat.categories)
     shape = (int(block.max(initial=-1)) + 1, len(names))
 
@@ -159,7 +161,7 @@ def side_by_side(
         for column in columns
         if column in kept
     }
-    problem = runs.groupby(list(PROBLEM), sort=False).ngroup()
+    problem = runs.groupby(list(PROBLEM), sort=True).ngroup()
     drawn = _drawn(kept, success)
     copies = None
     if blocks:
