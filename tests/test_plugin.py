@@ -11,6 +11,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import forked
 import pandas as pd
 import pytest
 
@@ -19,9 +20,12 @@ ROOT = TESTS.parent
 PLUGIN = TESTS / "plugin"
 
 
-def installed(source, site):
-    """Install a package beside the others, for processes that are told where."""
-    source = Path(shutil.copytree(source, site.with_name(f"{site.name}-source")))
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    """Install the package beside the others, for processes that are told where."""
+    folder = tmp_path_factory.mktemp("site")
+    source, site = (folder / name for name in ("source", "packages"))
+    shutil.copytree(PLUGIN, source)  # a build writes beside it
     options = ("--quiet", "--no-index", "--no-deps", "--no-build-isolation", "--target", str(site))
     pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "install", *options]
     done = subprocess.run([*pip, str(source)], capture_output=True, text=True)
@@ -29,23 +33,9 @@ def installed(source, site):
     return site
 
 
-@pytest.fixture(scope="module")
-def site(tmp_path_factory):
-    return installed(PLUGIN, tmp_path_factory.mktemp("site") / "packages")
-
-
 def run(site, folder, *command):
     """Run a command of gapath in a process that has the package."""
-    place = Path(sys.executable).parent / command[0]
-    program = [str(place)] if place.exists() else [sys.executable, "-m", command[0]]
-    done = subprocess.run(
-        [*program, *map(str, command[1:])],
-        env=os.environ | {"PYTHONPATH": str(site)},
-        cwd=folder,
-        capture_output=True,
-        text=True,
-    )
-    return done.returncode, done.stdout, done.stderr
+    return forked.run(command, folder, PYTHONPATH=str(site))
 
 
 def succeed(*command):
@@ -169,19 +159,26 @@ def told(path, number, seed, step):
 """
 
 
-def with_task(name, text, tmp_path):
-    """Install the package with one more task."""
-    source = Path(shutil.copytree(PLUGIN, tmp_path / "source"))
-    settings = source / "pyproject.toml"
-    head = '[project.entry-points."gapath.tasks"]\n'
-    line = f'{name} = "gapath_example.{name}"\n'
-    settings.write_text(settings.read_text().replace(head, head + line))
-    (source / "gapath_example" / f"{name}.py").write_text(text)
-    return installed(source, tmp_path / "packages")
+def with_entry_point(site, group, line, tmp_path):
+    """Copy the installed package, which has one entry point more then."""
+    copy = Path(shutil.copytree(site, tmp_path / "packages"))
+    (file,) = copy.glob("*.dist-info/entry_points.txt")
+    names, head = file.read_text(), f"[{group}]\n"
+    assert head in names
+    file.write_text(names.replace(head, f"{head}{line}\n"))
+    return copy
 
 
-def test_a_third_task_with_the_events_of_drives_works_everywhere(tmp_path):
-    site = with_task("walk", WALK, tmp_path)
+def with_task(site, name, text, tmp_path):
+    """Copy the installed package, which has one task more then."""
+    line = f"{name} = gapath_example.{name}"
+    copy = with_entry_point(site, "gapath.tasks", line, tmp_path)
+    (copy / "gapath_example" / f"{name}.py").write_text(text)
+    return copy
+
+
+def test_a_third_task_with_the_events_of_drives_works_everywhere(site, tmp_path):
+    site = with_task(site, "walk", WALK, tmp_path)
     command = ("gapath", "task=walk", "map=kg18_test3", "planner=astar", "trials=2")
     succeed(site, tmp_path, *command)
     folder = only(tmp_path / "outputs" / "walk")
@@ -204,11 +201,11 @@ def test_a_third_task_with_the_events_of_drives_works_everywhere(tmp_path):
     ],
 )
 def test_events_that_no_log_can_hold_are_refused_before_anything_is_written(
-    events, message, tmp_path
+    events, message, site, tmp_path
 ):
     own = WALK.replace("(TrialStarted, Stepped, DriveFinished)", events)
     own = own.replace("class Task(", "class Lap(Stepped):\n    pass\n\n\nclass Task(")
-    site = with_task("walk", own, tmp_path)
+    site = with_task(site, "walk", own, tmp_path)
     code, out, errors = run(site, tmp_path, "gapath", "task=walk", "planner=astar")
     assert (code, out) == (2, "")
     assert message in errors and "Traceback" not in errors
@@ -243,19 +240,14 @@ def test_an_edited_package_makes_other_runs(site, tmp_path):
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ('broken = "gapath_example.nothing"', "gapath.planners: broken = gapath_example.nothing"),
-        ('broken = "gapath_example.detour"', "gapath_example.detour: got no Planner, expected one"),
-        ('grid_search = "gapath_example.one_bend"', "a name that gapath does not use itself"),
+        ("broken = gapath_example.nothing", "gapath.planners: broken = gapath_example.nothing"),
+        ("broken = gapath_example.detour", "gapath_example.detour: got no Planner, expected one"),
+        ("grid_search = gapath_example.one_bend", "a name that gapath does not use itself"),
     ],
 )
-def test_a_package_that_is_wrong_is_one_clear_error(line, message, tmp_path):
-    source = Path(shutil.copytree(PLUGIN, tmp_path / "source"))
-    settings = source / "pyproject.toml"
-    head = '[project.entry-points."gapath.planners"]\n'
-    settings.write_text(settings.read_text().replace(head, f"{head}{line}\n"))
-    values = source / "gapath_example" / "conf" / "planner" / "broken.yaml"
-    values.write_text("kind: broken\n")
-    site = installed(source, tmp_path / "packages")
+def test_a_package_that_is_wrong_is_one_clear_error(line, message, site, tmp_path):
+    site = with_entry_point(site, "gapath.planners", line, tmp_path)
+    (site / "gapath_example" / "conf" / "planner" / "broken.yaml").write_text("kind: broken\n")
     planner = line.partition(" ")[0].replace("grid_search", "astar")
     code, out, errors = run(site, tmp_path, "gapath", f"planner={planner}", "recorder=none")
     assert (code, out) == (2, "")
@@ -279,6 +271,7 @@ def outputs(site, tmp_path_factory):
         ("detour", "def measure", "def count", "", ": got no measure, expected one with TITLE"),
         ("detour", "-> float", "-> str", "", ".measure, result: got <class 'str'>, expected float"),
         ("detour", "import", "1 / 0; import", "", ": got ZeroDivisionError('division by zero'), e"),
+        ("detour", "import", "exit(); import", "", ": got SystemExit(None), expected a module tha"),
         ("weights", "def read", "def load", "map=weights map.path=m.csv", ".Reader: got no read,"),
         ("round_trip", "def line", "def end", "task=round_trip", ".Task: got no line, expected on"),
         ("round_trip", "Row(Row)", "Row", "task=round_trip", ".Task.row: got <class 'gapath_exa"),

@@ -1,10 +1,10 @@
 """docs/questions.md: each command does what it shows, or is shown anew by --update-golden."""
 
-import os
 import re
-import subprocess
-import sys
+import shlex
 from pathlib import Path
+
+import forked
 
 PAGE = Path(__file__).parents[1] / "docs" / "questions.md"
 
@@ -16,19 +16,9 @@ _EXAMPLE = re.compile(r"^```console\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 def said(command, folder, answers):
     """What a command prints, its errors last; `--json` and tables alike at full width."""
-    environment = {**os.environ, "COLUMNS": "120", "NO_COLOR": "1", "CI": "1"}
-    path = f"{Path(sys.executable).parent}{os.pathsep}{environment['PATH']}"
-    done = subprocess.run(
-        ["bash", "-c", command],
-        cwd=folder,
-        env={**environment, "PATH": path},
-        text=True,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        timeout=240,
-    )
-    answers[command] = done.returncode
-    return "".join(f"{line.rstrip()}\n" for line in done.stdout.splitlines())
+    words = shlex.split(command)
+    answers[command], *texts = forked.run(words, folder, COLUMNS="120", NO_COLOR="1", CI="1")
+    return "".join(f"{line.rstrip()}\n" for text in texts for line in text.splitlines())
 
 
 def done_again(block, folder, answers):
