@@ -179,8 +179,12 @@ class GridMap(Shown):
 
     def least_weight(self, start: Field, target: Field) -> int:
         """Give the least table entry of any field but start and target (0 if none is left)."""
-        ends = (start[1] * self.cols + start[0], target[1] * self.cols + target[0])
-        return next((entry for entry, i in self._lightest if i not in ends), 0)
+        cols = self.weights.shape[1]
+        begin, end = start[1] * cols + start[0], target[1] * cols + target[0]
+        for entry, i in self._lightest:
+            if i != begin and i != end:
+                return entry
+        return 0
 
     def is_even(self, start: Field, target: Field) -> bool:
         """Tell whether all free fields but start and target weigh the same."""

@@ -5,7 +5,7 @@ is one, and proves it where there is none. docs/memetic.md tells the algorithm.
 """
 
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -16,15 +16,12 @@ from gapath.grid import Table
 from gapath.history.evolution import Evolution, Population
 from gapath.kernels.memetic import account
 from gapath.kernels.memetic.account import (
-    BEST,
     CHANGES,
     EPOCHS,
-    EVALUATIONS,
     INDIVIDUAL,
-    LOWER,
     NUMBERS,
     SHARES,
-    STATUS,
+    START,
     UNIT,
 )
 from gapath.kernels.memetic.evolution import evolve
@@ -117,39 +114,35 @@ class Planner:
             where there is none.
         """
         grid, rule = problem.map, problem.corner_cutting
+        (x, y), (u, v) = problem.start, problem.target
         least = grid.least_weight(problem.start, problem.target)
-        table, settings = grid.table, self.kernel_settings
+        table = grid.table
         told, path = evolve(
-            table, *problem.start, *problem.target, int(rule), least, settings, _UNKNOWN, stream
+            table, x, y, u, v, int(rule), least, self.kernel_settings, _UNKNOWN, stream
         )
-        if told[STATUS] < 0:
+        status, best, lower, start, _, epochs, evaluations = told[:CHANGES].tolist()
+        if status < 0:
             return Plan(PlanStatus.INFEASIBLE)
-        x, y = problem.start
-        start = int(table[y, x])
         # a robot's table changes; only where no diagonal step is allowed it is asked again
-        result = _Result(told, start, table.copy() if rule is _STRAIGHT else None)
-        total, lower, epochs, evaluations = told[_TOLD].tolist()
+        result = _Result(told, table.copy() if rule is _STRAIGHT else None)
         return Plan(
-            PlanStatus.OPTIMAL if total <= lower else PlanStatus.FOUND,
+            PlanStatus.OPTIMAL if best <= lower else PlanStatus.FOUND,
             path,
-            (total + start) / SCALE,
+            (best + start) / SCALE,
             epochs=epochs,
             evaluations=evaluations,
-            trace=partial(_evolution, result),
-            lines=partial(_lines, result),
+            trace=result.evolution,
+            lines=result.lines,
         )
 
 
 _STRAIGHT = CornerCutting.NO_DIAGONALS
-_TOLD = [BEST, LOWER, EPOCHS, EVALUATIONS]
 
 
 class _Result(NamedTuple):
     """What the kernel told."""
 
     told: NDArray[np.int64]
-    start: int
-    """Weight of the start, in units of 1 / SCALE."""
     table: Table | None
     """The map, where rays go by way of fields between two vertices."""
 
@@ -173,46 +166,46 @@ class _Result(NamedTuple):
         path = path[:count]
         return corners(np.stack([path & X_MASK, path >> X_BITS], axis=1).astype(np.int32))
 
+    def lines(self) -> NDArray[np.int32]:
+        """Give the best polygon."""
+        return self.polygon(self._last)
 
-def _lines(result: _Result) -> NDArray[np.int32]:
-    """Give the best polygon."""
-    own = np.flatnonzero(result.changes[:, ROW] == result.told[INDIVIDUAL])
-    return result.polygon(int(own[-1]))
+    @property
+    def _last(self) -> int:
+        """Number of the change that made the best individual what it is."""
+        return int(np.flatnonzero(self.changes[:, ROW] == self.told[INDIVIDUAL])[-1])
 
-
-def _evolution(result: _Result) -> Evolution:
-    """Tell the history."""
-    changes, told = result.changes, result.told
-    polygons = [result.polygon(i) for i in range(len(changes))]
-    costs = (changes[:, TOTAL] + result.start) / SCALE
-    shares = told[SHARES:NUMBERS].copy()
-    shares[0] += result.start
-    population = Population(
-        epochs=changes[:, EPOCH].astype(np.int32),
-        individuals=changes[:, ROW].astype(np.int32),
-        operators=changes[:, OPERATOR].astype(np.int32),
-        gains=changes[:, GAIN] / SCALE,
-        costs=costs,
-        ends=np.cumsum([len(polygon) for polygon in polygons]).astype(np.int32),
-        vertices=np.concatenate(polygons),
-        names=NAMES,
-        shares=tuple((shares / SCALE).tolist()),
-    )
-    standing = population.standing(int(told[EPOCHS]))
-    now = np.where(standing < 0, np.inf, costs[standing])
-    best = standing[np.arange(len(standing)), now.argmin(axis=1)].tolist()
-    # the last one is the path's
-    own = np.flatnonzero(changes[:, ROW] == told[INDIVIDUAL])
-    best[-1] = int(own[-1])
-    way_points = padded([polygons[i] for i in best])
-    return Evolution(
-        best=now.min(axis=1),
-        mean=np.nanmean(np.where(standing < 0, np.nan, now), axis=1),
-        chromosomes=way_points.reshape(len(best), -1),
-        way_points=way_points,
-        genotype="polygon",
-        population=population,
-    )
+    def evolution(self) -> Evolution:
+        """Tell the history."""
+        changes, told = self.changes, self.told
+        polygons = [self.polygon(i) for i in range(len(changes))]
+        costs = (changes[:, TOTAL] + told[START]) / SCALE
+        shares = told[SHARES:NUMBERS].copy()
+        shares[0] += told[START]
+        population = Population(
+            epochs=changes[:, EPOCH].astype(np.int32),
+            individuals=changes[:, ROW].astype(np.int32),
+            operators=changes[:, OPERATOR].astype(np.int32),
+            gains=changes[:, GAIN] / SCALE,
+            costs=costs,
+            ends=np.cumsum([len(polygon) for polygon in polygons]).astype(np.int32),
+            vertices=np.concatenate(polygons),
+            names=NAMES,
+            shares=tuple((shares / SCALE).tolist()),
+        )
+        standing = population.standing(int(told[EPOCHS]))
+        now = np.where(standing < 0, np.inf, costs[standing])
+        best = standing[np.arange(len(standing)), now.argmin(axis=1)].tolist()
+        best[-1] = self._last  # of equals the one whose path it is
+        way_points = padded([polygons[i] for i in best])
+        return Evolution(
+            best=now.min(axis=1),
+            mean=np.nanmean(np.where(standing < 0, np.nan, now), axis=1),
+            chromosomes=way_points.reshape(len(best), -1),
+            way_points=way_points,
+            genotype="polygon",
+            population=population,
+        )
 
 
 def padded(polygons: list[NDArray[np.int32]]) -> NDArray[np.int32]:

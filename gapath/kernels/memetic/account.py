@@ -11,10 +11,10 @@ WALLS, LOOPS, ASIDE, PULLING, COARSE, NEWCOMER, CROSSOVER, REROUTE, VERTICES = r
 OPERATORS = VERTICES + 4
 """How many there are."""
 
-STATUS, BEST, LOWER, INDIVIDUAL, EPOCHS, EVALUATIONS, CHANGES, POINTS, SHARES = range(9)
+STATUS, BEST, LOWER, START, INDIVIDUAL, EPOCHS, EVALUATIONS, CHANGES, POINTS, SHARES = range(10)
 NUMBERS = SHARES + OPERATORS
 """What comes out besides: the fields of the first path, or what it is instead
 (`gapath.kernels.memetic.walls.NO_WAY`); the sum of the best path's weights, its start left out;
-what no path can undercut; which individual is best; epochs; how many newcomers, crossovers and
-mutations were tried; what the diary holds; and how much each operator lowered the cost of the best
-individual, of WALLS what the first path costs."""
+what no path can undercut; the start's weight; which individual is best; epochs; how many
+newcomers, crossovers and mutations were tried; what the diary holds; and how much each operator
+lowered the cost of the best individual, of WALLS what the first path costs."""

@@ -28,6 +28,7 @@ from gapath.kernels.memetic.account import (
     REROUTE,
     REROUTE_THRESHOLD,
     SHARES,
+    START,
     STATUS,
     TOLERANCE,
     UNIT,
@@ -42,12 +43,14 @@ from gapath.kernels.memetic.population import (
     individuals,
     length_of,
     noted,
+    opened,
     put,
     same_side,
     with_room,
 )
-from gapath.kernels.memetic.rerouting import MARGIN, Room, crossed, reroute, walked_path
-from gapath.kernels.memetic.shortening import SHORTENING, shortened
+from gapath.kernels.memetic.rays import ray
+from gapath.kernels.memetic.rerouting import Room, crossed, reroute, walked_path
+from gapath.kernels.memetic.shortening import FIXED, SHORTENING, shortened
 from gapath.kernels.memetic.steps import X_BITS, X_MASK
 from gapath.kernels.rng import Stream, fill, happens, high, low
 
@@ -104,6 +107,16 @@ def evolve(
     else:
         lower += least * (max(abs(target_x - start_x), abs(target_y - start_y)) - 1)
     content = lower + lower * settings[TOLERANCE] // UNIT
+    numbers[LOWER], numbers[START] = lower, table[start_y, start_x]
+    blocked, straight = ray(table, start_x, start_y, target_x, target_y, rule)
+    if blocked == 0 and straight <= content:
+        members = individuals(1, 2)
+        members.points[0, 0, 0], members.points[0, 0, 1] = start_x, start_y
+        members.points[0, 1, 0], members.points[0, 1, 1] = target_x, target_y
+        members.sizes[0], members.totals[0] = 2, straight
+        numbers[STATUS], shares[WALLS] = 2, straight
+        diary = noted(opened(2), members, 1, 0, WALLS, 0)
+        return finished(table, rule, members, 0, 1, 1, diary, numbers, np.empty(0, dtype=np.uint32))
     order = np.empty(table.size, dtype=np.int32)
     if known.shape[0]:
         count, walked, path = known.shape[0], np.int64(0), known.copy()
@@ -113,7 +126,7 @@ def evolve(
             table, start_x, start_y, target_x, target_y, rule, hands,
             np.int64(1) << 40, False, False, path, stream,
         )  # fmt: skip
-    numbers[STATUS], numbers[LOWER] = count, lower
+    numbers[STATUS] = count
     if count < 0:
         return numbers, np.empty((0, 2), dtype=np.int32)
     fields = walked + SHORTENING * count
@@ -125,12 +138,7 @@ def evolve(
     if total <= content:
         population = 1  # no room for others
     members = put(individuals(population, size), 0, points, costs, size, total)
-    diary = Diary(
-        np.empty((4, 6), dtype=np.int64),
-        np.empty((2 * size, 2), dtype=np.int32),
-        np.zeros(2, dtype=np.int64),
-    )
-    diary = noted(diary, members, 1, 0, WALLS, 0)
+    diary = noted(opened(size), members, 1, 0, WALLS, 0)
     n, best, epoch, evaluations = 1, 0, 1, 1
     spent = np.int64(0)
     if total <= content or budget == 0:
@@ -138,7 +146,11 @@ def evolve(
 
     room = Room(order, path, np.empty(256, dtype=np.uint32), np.empty(512, dtype=np.uint32))
     for k in range(1, 2 * members.sizes.shape[0]):
-        if n == members.sizes.shape[0] or members.totals[best] <= content or spent >= budget:
+        if (
+            n == members.sizes.shape[0]
+            or members.totals[best] <= content
+            or spent + FIXED >= budget
+        ):
             break
         count, walked, path = walked_path(
             table, start_x, start_y, target_x, target_y, rule, hands,
@@ -146,7 +158,7 @@ def evolve(
         )  # fmt: skip
         evaluations += 1
         room = Room(order, path, room.other, room.child)
-        spent += walked + SHORTENING * max(count, 0)
+        spent += FIXED + walked + SHORTENING * max(count, 0)
         if count < 0:
             continue
         size, total, points, costs = shortened(table, path, count, rule, content, True, order, none)
@@ -217,8 +229,8 @@ def evolve(
                     table, members.points[row], members.costs[row], size, i, j, new, count, rule
                 )
                 members.totals[row] -= max(gain, 0)
-                fields = np.int64(MARGIN)
-        spent += max(fields, 1)
+                fields = np.int64(0)
+        spent += FIXED + fields
         evaluations += 1
         if gain > 0:
             diary = noted(diary, members, epoch, row, operator, gain)

@@ -84,6 +84,16 @@ def put(
 
 
 @kernel
+def opened(vertices: int) -> Diary:
+    """Open a diary with room for a few changes of polygons of so many vertices."""
+    return Diary(
+        np.empty((2, 6), dtype=np.int64),
+        np.empty((vertices, 2), dtype=np.int32),
+        np.zeros(2, dtype=np.int64),
+    )
+
+
+@kernel
 def noted(
     diary: Diary, members: Individuals, epoch: int, row: int, operator: int, gain: int
 ) -> Diary:

@@ -13,8 +13,9 @@ from gapath.kernels.units import NO_DIAGONALS, OBSTACLE
 APART, REACH, LEAST_GAIN = 8, 128, 8
 """Fields from one look aside to the next, that it reaches, that it has to save."""
 
-SHORTENING = 4
-"""What it takes to make a path shorter, a field, in steps along walls."""
+FIXED, SHORTENING = 64, 4
+"""What an evaluation takes, and what it takes to make a path shorter, a field: in steps along
+walls."""
 
 LONG = 48
 """Fields of a path from which on looks aside are worth their time."""
