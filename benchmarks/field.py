@@ -1,99 +1,32 @@
-"""Planners on the same problems: real maps, what an answer is worth, and times taken in turn."""
+"""Planners on the same problems: what an answer is worth, and times taken in turn."""
 
-import os
 import random
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from benchmarks.measure import Calls, Row, make_planner, quartiles
+from benchmarks.posed import solvable
 from gapath.discovery import yaml_names
 from gapath.errors import InputError
-from gapath.grid import Field, GridMap
 from gapath.kernels.graph_search import BY_LENGTH, FIELD_BITS, path_to, search
-from gapath.kernels.rng import Stream, fill, high, stream
-from gapath.mapio import movingai
-from gapath.planners import grid_search
+from gapath.kernels.memetic.evolution import evolve
+from gapath.kernels.rng import Stream, stream
+from gapath.planners import grid_search, memetic
 from gapath.planning.flaw import flaw
 from gapath.planning.planner import Particular, Planner
 from gapath.planning.shortest_path import shortest_path
-from gapath.problem import CornerCutting, Plan, PlanStatus, Problem
+from gapath.problem import Plan, PlanStatus, Problem
 
-FREE_WEIGHT = 0.5  # of conf/map/movingai.yaml
-NO_DATA = "skipped: no real maps: set GAPATH_DATA or put them into ../shared/data"
 TAKES = 3
 """Of so many times of a call the least counts: whatever disturbs one makes it longer."""
 ASTAR = "A*"
 CHEAPEST = ("astar", "dijkstra", "jps")
 """Planners whose paths are to cost what A*'s does."""
-
-
-def real_maps() -> Path | None:
-    """Give the folder of real maps, which is not part of the project; None where there is none."""
-    place = Path(os.environ.get("GAPATH_DATA", Path(__file__).parents[2] / "shared" / "data"))
-    return place if place.is_dir() else None
-
-
-def scenarios(folder: Path) -> list[tuple[Path, list[movingai.ScenarioProblem]]]:
-    """Find MovingAI maps below a folder, each with all problems of its ``.scen`` file."""
-    found = []
-    for path in sorted(folder.rglob("*.scen")):
-        rows = movingai.read_scenario(str(path))
-        found.append((path.parent / Path(rows[0].map_name).name, rows))
-    return found
-
-
-def evenly(rows: Sequence[Any], most: int) -> list[Any]:
-    """Choose at most so many rows, each from the middle of its share."""
-    most = min(len(rows), most)
-    return [rows[(2 * i + 1) * len(rows) // (2 * most)] for i in range(most)]
-
-
-class Ground:
-    """A MovingAI map, read once for all problems that pass the same fields."""
-
-    def __init__(self, path: Path) -> None:
-        self._path = path
-        self._read = [self._reader(None).read()]
-
-    def _reader(self, start: list[int] | None) -> movingai.Reader:
-        return movingai.Reader(str(self._path), start, None, FREE_WEIGHT, None, 0)
-
-    def problem(self, start: Field, target: Field, rule: CornerCutting) -> Problem:
-        """Pose a problem on what can be passed from its start: ground, or water."""
-        for grid in self._read:
-            if not grid.obstacles[start[1], start[0]]:
-                return Problem(grid, start, target, rule)
-        self._read.append(self._reader(list(start)).read())
-        return Problem(self._read[-1], start, target, rule)
-
-
-def scenario_problems(
-    path: Path, rows: Sequence[movingai.ScenarioProblem], rule: CornerCutting
-) -> list[Problem]:
-    """Pose those problems of a MovingAI map that can be solved; a map is read once for all."""
-    ground = Ground(path)
-    posed = [ground.problem(row.start, row.target, rule) for row in rows]
-    return [problem for problem in posed if solvable(problem)]
-
-
-def solvable(problem: Problem) -> bool:
-    """Tell whether a path joins the ends, by a flood of the map."""
-    return problem.map.joined(problem.start, problem.target, int(problem.corner_cutting))
-
-
-def random_problems(grid: GridMap, count: int, seed: int, rule: CornerCutting) -> list[Problem]:
-    """Pose problems between free fields drawn at random, joined or not."""
-    free = np.argwhere(~grid.obstacles)[:, ::-1]
-    words = np.empty((count, 2), dtype=np.uint64)
-    fill(stream(seed), words.ravel())
-    ends = free[[[high(word, len(free)) for word in pair] for pair in words]]
-    return [Problem(grid, tuple(start), tuple(target), rule) for start, target in ends.tolist()]
 
 
 def contenders(
@@ -149,10 +82,13 @@ def verdict(problem: Problem, plan: Plan) -> str:
     -------
     str
         "found" a path that is one; "missed" one, or the proof that there is none; "proved" that
-        there is none; "false", any answer that is not so.
+        there is none; "false", any answer that is not so, or a dearer path said to be optimal.
     """
     if plan.feasible:
-        return "found" if flaw(problem, plan.path, plan.cost) is None else "false"
+        claims = plan.status is PlanStatus.OPTIMAL
+        wrong = flaw(problem, plan.path, plan.cost) is not None
+        wrong = wrong or (claims and plan.cost > shortest_path(problem).cost)
+        return "false" if wrong else "found"
     if plan.status is PlanStatus.INFEASIBLE:
         return "false" if solvable(problem) else "proved"
     return "missed"
@@ -176,8 +112,19 @@ def graph_search(planner: grid_search.Planner, problem: Problem, _: Stream) -> C
     return call
 
 
+def memetic_algorithm(
+    planner: memetic.Planner, problem: Problem, random: Stream
+) -> Callable[[], Any]:
+    """Give the memetic algorithm as a call of its kernel."""
+    ends, rule = (*problem.start, *problem.target), int(problem.corner_cutting)
+    least = problem.map.least_weight(problem.start, problem.target)
+    query = (problem.map.table, *ends, rule, least)
+    return partial(evolve, *query, planner.kernel_settings, np.empty(0, dtype=np.uint32), random)
+
+
 KERNELS: dict[type, Callable[[Any, Problem, Stream], Callable[[], Any]]] = {
     grid_search.Planner: graph_search,
+    memetic.Planner: memetic_algorithm,
 }
 """Planners whose kernel can be called by itself: how that is prepared."""
 

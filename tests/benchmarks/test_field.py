@@ -3,21 +3,10 @@
 import numpy as np
 import pytest
 
-from benchmarks import field
-from benchmarks.field import (
-    Heat,
-    compared,
-    contenders,
-    evenly,
-    least_times,
-    race,
-    random_problems,
-    scenario_problems,
-    scenarios,
-    summary,
-    verdict,
-)
+from benchmarks import field, posed
+from benchmarks.field import Heat, compared, contenders, least_times, race, summary, verdict
 from benchmarks.measure import make_planner, make_problem
+from benchmarks.posed import evenly, random_problems, scenario_problems, scenarios
 from benchmarks.questions.field import (
     field_ablation,
     field_calls,
@@ -28,6 +17,7 @@ from benchmarks.questions.field import (
     field_test4,
 )
 from gapath.grid import GridMap
+from gapath.kernels.rng import stream
 from gapath.mapio.movingai import read_scenario
 from gapath.planning.shortest_path import shortest_path
 from gapath.problem import CornerCutting, Plan, PlanStatus, Problem
@@ -84,6 +74,8 @@ ROUND = np.array([(0, 2), (1, 1), (2, 2), (2, 1), *((x, 2) for x in range(3, 7))
         (True, Plan(PlanStatus.FOUND, LINE, 3.0), "false"),  # it costs something else
         (True, Plan(PlanStatus.FOUND, LINE[:-1], 3.0), "false"),
         (False, Plan(PlanStatus.FOUND, LINE, 3.5), "false"),
+        (True, Plan(PlanStatus.OPTIMAL, LINE, 3.5), "found"),
+        (True, Plan(PlanStatus.OPTIMAL, ROUND, 4.0), "false"),  # not the cheapest
         (True, Plan(PlanStatus.INFEASIBLE), "false"),
         (False, Plan(PlanStatus.INFEASIBLE), "proved"),
         (True, Plan(PlanStatus.NOT_FOUND), "missed"),
@@ -113,12 +105,13 @@ def test_a_dearer_path_is_false_only_of_a_planner_whose_paths_are_the_cheapest(n
     assert set(heat.times) == {"A*", "A*, kernel", name} and min(heat.times.values()) > 0
 
 
-@pytest.mark.parametrize("name", ["astar", "dijkstra", "astar_length"])
+@pytest.mark.parametrize("name", ["astar", "dijkstra", "astar_length", "memetic_quality"])
 def test_a_kernel_alone_finds_what_the_planner_finds(name):
     problem = make_problem("kg18_test3")
     planner = make_planner(name)
-    alone = field.KERNELS[type(planner)](planner, problem, None)()
-    assert alone.tolist() == planner.plan(problem, None).path.tolist()
+    found = field.KERNELS[type(planner)](planner, problem, stream(3))()
+    path = found[1] if isinstance(found, tuple) else found
+    assert path.tolist() == planner.plan(problem, stream(3)).path.tolist()
 
 
 def test_the_least_of_several_times_counts_and_rivals_take_turns():
@@ -212,13 +205,13 @@ def test_movingai_has_a_row_a_map_and_rule_and_one_for_all(scenario, stand_ins):
 
 def test_without_real_maps_the_reason_is_stated(tmp_path, monkeypatch, stand_ins):
     monkeypatch.setenv("GAPATH_DATA", str(tmp_path / "none"))
-    assert field_movingai.measure(quick=True) == [{"map": "all", "planner": field.NO_DATA}]
+    assert field_movingai.measure(quick=True) == [{"map": "all", "planner": posed.NO_DATA}]
     rows = field_found.measure(quick=True)
     reasons = {row["source"]: row["problems"] for row in rows if row["planner"] == "astar"}
-    assert {reasons[name] for name in field_found.REAL} == {field.NO_DATA}
+    assert {reasons[name] for name in field_found.REAL} == {posed.NO_DATA}
     assert reasons["random maps"] == 4
     monkeypatch.setattr(field_ablation, "PLANNERS", ("nobody",))
-    assert field_ablation.measure(quick=True)[-1]["problems"] == field.NO_DATA
+    assert field_ablation.measure(quick=True)[-1]["problems"] == posed.NO_DATA
 
 
 def test_all_that_can_be_solved_is_counted(stand_ins, scenario):

@@ -6,17 +6,9 @@ costs as of `field_movingai`. "dearer / whole" is the mean of "dearer" over the 
 
 from typing import Any
 
-from benchmarks.field import (
-    NO_DATA,
-    compared,
-    contenders,
-    evenly,
-    real_maps,
-    scenario_problems,
-    scenarios,
-    summary,
-)
+from benchmarks.field import compared, contenders, summary
 from benchmarks.measure import Row, make_problem
+from benchmarks.posed import NO_DATA, evenly, real_maps, scenario_problems, scenarios
 from gapath.problem import CornerCutting, Problem
 
 PLANNERS = ("memetic", "memetic_quality")

@@ -17,19 +17,17 @@ from pathlib import Path
 import numpy as np
 
 import gapath
-from benchmarks.field import (
+from benchmarks.field import contenders, unsuited, verdict
+from benchmarks.measure import Row
+from benchmarks.posed import (
     NO_DATA,
-    contenders,
     evenly,
     random_problems,
     real_maps,
     scenario_problems,
     scenarios,
     solvable,
-    unsuited,
-    verdict,
 )
-from benchmarks.measure import Row
 from gapath.errors import InputError
 from gapath.grid import GridMap
 from gapath.kernels.rng import fill, high, low, stream

@@ -7,8 +7,9 @@ as of `field_movingai`.
 """
 
 import gapath
-from benchmarks.field import compared, contenders, random_problems, summary
+from benchmarks.field import compared, contenders, summary
 from benchmarks.measure import Row
+from benchmarks.posed import random_problems
 from gapath.grid import Field, GridMap, nearest_free
 from gapath.problem import CornerCutting, Problem
 

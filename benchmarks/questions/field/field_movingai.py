@@ -12,18 +12,9 @@ Maps: Moving AI Lab (Sturtevant 2012), ODC-BY.
 
 from pathlib import Path
 
-from benchmarks.field import (
-    NO_DATA,
-    Heat,
-    compared,
-    contenders,
-    evenly,
-    real_maps,
-    scenario_problems,
-    scenarios,
-    summary,
-)
+from benchmarks.field import Heat, compared, contenders, summary
 from benchmarks.measure import Row
+from benchmarks.posed import NO_DATA, evenly, real_maps, scenario_problems, scenarios
 from gapath.mapio.movingai import ScenarioProblem
 from gapath.problem import CornerCutting
 
