@@ -15,8 +15,9 @@ from gapath.discovery import yaml_names
 from gapath.errors import InputError
 from gapath.kernels.graph_search import BY_LENGTH, FIELD_BITS, path_to, search
 from gapath.kernels.memetic.evolution import evolve
+from gapath.kernels.rivals.jump_points import jump_search, jumped_path
 from gapath.kernels.rng import Stream, stream
-from gapath.planners import grid_search, memetic
+from gapath.planners import grid_search, jump_point, memetic
 from gapath.planning.flaw import flaw
 from gapath.planning.planner import Particular, Planner
 from gapath.planning.shortest_path import shortest_path
@@ -122,8 +123,24 @@ def memetic_algorithm(
     return partial(evolve, *query, planner.kernel_settings, np.empty(0, dtype=np.uint32), random)
 
 
+def jump_point_search(
+    planner: jump_point.Planner, problem: Problem, _: Stream
+) -> Callable[[], Any]:
+    """Give jump point search as calls of kernels."""
+    table, rule = problem.map.table, int(problem.corner_cutting)
+    query = (table, *problem.start, *problem.target, rule, *jump_point.STEPS[planner.minimise])
+    expansions = np.zeros(1, dtype=np.int64)
+
+    def call() -> Any:
+        turns = np.empty(table.size, dtype=np.int64)
+        return jumped_path(turns[: jump_search(*query, turns, expansions)], table.shape[1], rule)
+
+    return call
+
+
 KERNELS: dict[type, Callable[[Any, Problem, Stream], Callable[[], Any]]] = {
     grid_search.Planner: graph_search,
+    jump_point.Planner: jump_point_search,
     memetic.Planner: memetic_algorithm,
 }
 """Planners whose kernel can be called by itself: how that is prepared."""

@@ -105,7 +105,7 @@ def test_a_dearer_path_is_false_only_of_a_planner_whose_paths_are_the_cheapest(n
     assert set(heat.times) == {"A*", "A*, kernel", name} and min(heat.times.values()) > 0
 
 
-@pytest.mark.parametrize("name", ["astar", "dijkstra", "astar_length", "memetic_quality"])
+@pytest.mark.parametrize("name", ["astar", "dijkstra", "jps", "memetic_quality"])
 def test_a_kernel_alone_finds_what_the_planner_finds(name):
     problem = make_problem("kg18_test3")
     planner = make_planner(name)
