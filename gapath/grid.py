@@ -208,17 +208,9 @@ class GridMap(Shown):
         return bool(parts[start[1], start[0]] == parts[target[1], target[0]])
 
     def parts(self, rule: int) -> NDArray[np.int32]:
-        """Tell which fields paths join; what that takes is done once a map.
+        """Give the number of each field's part, (rows, cols) from 1; 0 for obstacles.
 
-        Parameters
-        ----------
-        rule : int
-            Corner-cutting rule (`gapath.kernels.units`).
-
-        Returns
-        -------
-        (rows, cols) int32
-            The number of the part that a field belongs to, from 1; 0 where an obstacle is.
+        Paths under the corner-cutting rule join the fields of a part; it is done once a map.
         """
         return self._parts_by_corners if rule == ALLOW else self._parts_by_sides
 

@@ -16,7 +16,7 @@ from gapath.store.records import RunRecord
 
 TASK = "scenario"
 EXPERIMENT = "field"
-ORDER = 81
+ORDER = 98
 
 _TICKS = tuple(4 * 8**power for power in range(7))
 

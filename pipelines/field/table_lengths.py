@@ -13,7 +13,7 @@ from gapath.store.records import RunRecord
 
 TASK = "scenario"
 EXPERIMENT = "field"
-ORDER = 80
+ORDER = 97
 
 
 def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:

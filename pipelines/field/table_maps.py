@@ -11,7 +11,7 @@ from gapath.store.records import RunRecord
 
 TASK = "scenario"
 EXPERIMENT = "field"
-ORDER = 82
+ORDER = 99
 
 _LIKE = (
     Column("Length / published", "length_ratio_median"),
