@@ -34,7 +34,7 @@ class Planner:
 
     minimise: str
 
-    exact = True
+    exact = optimal = True
 
     def __post_init__(self) -> None:
         require(

@@ -1,12 +1,17 @@
 """Planners that call themselves optimal, found, not listed: no path is better than theirs."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 from hypothesis import given, settings
+from hypothesis import strategies as st
 from strategies import problems
 
 from gapath.components import build
 from gapath.discovery import yaml_names, yaml_values
 from gapath.errors import InputError
+from gapath.grid import GridMap
 from gapath.kernels.rng import stream
 from gapath.planning.path import octile_length
 from gapath.planning.planner import Optimal, Particular
@@ -19,14 +24,17 @@ OPTIMAL = [name for name, planner in PLANNERS.items()
 
 
 def test_there_are_some():
-    assert {"astar", "dijkstra", "astar_length"} <= set(OPTIMAL)
+    assert {"astar", "dijkstra", "astar_length", "jps"} <= set(OPTIMAL)
 
 
 @pytest.mark.parametrize("name", OPTIMAL)
 @settings(max_examples=50)
-@given(problems())
-def test_what_an_optimal_planner_finds_is_the_least(name, problem):
+@given(problems(), st.booleans())
+def test_what_an_optimal_planner_finds_is_the_least(name, problem, even):
     planner = PLANNERS[name]
+    if even:
+        weights = np.where(problem.map.obstacles, 1.0, 0.25)
+        problem = replace(problem, map=GridMap("even", weights))
     if isinstance(planner, Particular):
         try:
             planner.check(problem)
