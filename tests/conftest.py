@@ -8,7 +8,7 @@ import pytest
 from hypothesis import settings
 
 TESTS = Path(__file__).parent
-# twins and strategies; the benchmarks, which are not installed
+# twins, strategies and commands; the benchmarks, which are not installed
 sys.path[:0] = map(str, (TESTS, TESTS / "twins", TESTS.parent))
 sys.path.append(str(TESTS / "plugin"))  # not before that package where it is installed
 
