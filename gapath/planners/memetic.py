@@ -16,12 +16,18 @@ from gapath.grid import Table
 from gapath.history.evolution import Evolution, Population
 from gapath.kernels.memetic import account
 from gapath.kernels.memetic.account import (
+    ASK,
     CHANGES,
+    CROWDED,
+    EFFORT,
     EPOCHS,
     INDIVIDUAL,
     NUMBERS,
+    ROUGH,
+    SEARCH,
     SHARES,
     START,
+    STATUS,
     UNIT,
 )
 from gapath.kernels.memetic.evolution import evolve
@@ -30,12 +36,14 @@ from gapath.kernels.memetic.population import END, EPOCH, GAIN, OPERATOR, ROW, T
 from gapath.kernels.memetic.steps import X_BITS, X_MASK
 from gapath.kernels.rng import Stream, probability_threshold
 from gapath.kernels.units import SCALE
+from gapath.planning.coarse_search import LARGE, coarse_path
 from gapath.planning.path import corners
+from gapath.planning.shortest_path import shortest_path
 from gapath.problem import CornerCutting, Plan, PlanStatus, Query
 
 _HANDS = {"left": 1, "right": 2, "both": 3}
 
-NAMES = ("wall following", "loops cut", "looks aside", "pulling", "coarse map", "newcomer",
+NAMES = ("wall following", "loops cut", "looks aside", "pulling", "search", "newcomer",
          "crossover", "reroute", "shortcut", "move", "cut", "insert")  # fmt: skip
 """What finds a path and makes it cheaper (`gapath.kernels.memetic.account`)."""
 
@@ -55,7 +63,8 @@ class Planner:
     effort : float
         What newcomers, crossovers and mutations may read, times the fields of the first path.
     tolerance : float
-        Stop at a path that costs at most 1 + tolerance times the least that any path can.
+        Stop at a path that costs by this share, or by a field of the least weight, more than the
+        least that any path can; 0: not before it is proved to cost the least.
     crossover_probability : float
         Of an evaluation; the others mutate.
     reroute_probability : float
@@ -84,11 +93,11 @@ class Planner:
 
     @cached_property
     def kernel_settings(self) -> NDArray[np.int64]:
-        """The settings as the kernel takes them, (6,) `gapath.kernels.memetic.account`."""
-        settings = np.empty(6, dtype=np.int64)
+        """The settings as the kernel takes them, (7,) `gapath.kernels.memetic.account`."""
+        settings = np.ones(7, dtype=np.int64)
         settings[account.POPULATION] = self.population
         settings[account.HANDS] = _HANDS[self.hands]
-        settings[account.EFFORT] = round(self.effort * UNIT)
+        settings[EFFORT] = round(self.effort * UNIT)
         settings[account.TOLERANCE] = round(self.tolerance * UNIT)
         for place, probability in (
             (account.CROSSOVER_THRESHOLD, self.crossover_probability),
@@ -117,20 +126,36 @@ class Planner:
         (x, y), (u, v) = problem.start, problem.target
         least = grid.least_weight(problem.start, problem.target)
         table = grid.table
-        told, path = evolve(
-            table, x, y, u, v, int(rule), least, self.kernel_settings, _UNKNOWN, stream
-        )
+        ends, settings = (x, y, u, v), self.kernel_settings
+        told, path = evolve(table, *ends, int(rule), least, settings, _UNKNOWN, stream)
+        expansions, proved = 0, False
+        if told[STATUS] in (ROUGH, CROWDED):
+            large = told[STATUS] == ROUGH and table.size > LARGE
+            searched = coarse_path(problem) if large else shortest_path(problem)
+            expansions, proved = searched.expansions, not large
+            known = (searched.path[:, 1].astype(np.uint32) << X_BITS) | searched.path[:, 0]
+            settings = settings.copy()
+            settings[ASK] = 0
+            if proved:  # it cannot become cheaper
+                settings[EFFORT] = 0
+            walls = told[SHARES]
+            told, path = evolve(
+                table, *ends, int(rule), least, settings, known.astype(np.uint32), stream
+            )
+            told[SHARES + SEARCH] = walls - told[SHARES]
+            told[SHARES] = walls
         status, best, lower, start, _, epochs, evaluations = told[:CHANGES].tolist()
         if status < 0:
             return Plan(PlanStatus.INFEASIBLE)
         # a robot's table changes; only where no diagonal step is allowed it is asked again
         result = _Result(told, table.copy() if rule is _STRAIGHT else None)
         return Plan(
-            PlanStatus.OPTIMAL if best <= lower else PlanStatus.FOUND,
+            PlanStatus.OPTIMAL if best <= lower or proved else PlanStatus.FOUND,
             path,
             (best + start) / SCALE,
             epochs=epochs,
             evaluations=evaluations,
+            expansions=expansions,
             trace=result.evolution,
             lines=result.lines,
         )

@@ -1,12 +1,13 @@
 """What the memetic algorithm is set to, and what it tells: places in the arrays for both."""
 
-POPULATION, HANDS, EFFORT, TOLERANCE, CROSSOVER_THRESHOLD, REROUTE_THRESHOLD = range(6)
+POPULATION, HANDS, EFFORT, TOLERANCE, CROSSOVER_THRESHOLD, REROUTE_THRESHOLD, ASK = range(7)
 """What the kernel is set to: EFFORT and TOLERANCE in units of 1 / `UNIT`, probabilities as
-`gapath.kernels.rng.probability_threshold` gives them. (numba takes long to look at a record.)"""
+`gapath.kernels.rng.probability_threshold` gives them; ASK is 1 to end as soon as the first path
+is found to be `ROUGH` or `CROWDED`. (numba takes long to look at a record.)"""
 
 UNIT = 1024
 
-WALLS, LOOPS, ASIDE, PULLING, COARSE, NEWCOMER, CROSSOVER, REROUTE, VERTICES = range(9)
+WALLS, LOOPS, ASIDE, PULLING, SEARCH, NEWCOMER, CROSSOVER, REROUTE, VERTICES = range(9)
 """What finds a path and makes it cheaper; from VERTICES on the four of `mutations`."""
 OPERATORS = VERTICES + 4
 """How many there are."""
@@ -18,3 +19,7 @@ NUMBERS = SHARES + OPERATORS
 what no path can undercut; the start's weight; which individual is best; epochs; how many
 newcomers, crossovers and mutations were tried; what the diary holds; and how much each operator
 lowered the cost of the best individual, of WALLS what the first path costs."""
+
+ROUGH, CROWDED = -3, -4
+"""STATUS where nothing but a first path was made, since others say more than walls do: ROUGH where
+weights change from field to field, CROWDED where obstacles bend it every few fields."""

@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 
 from gapath.kernels.jit import kernel
 from gapath.kernels.memetic.account import (
+    ASK,
     BEST,
     CHANGES,
     CROSSOVER,
     CROSSOVER_THRESHOLD,
+    CROWDED,
     EFFORT,
     EPOCHS,
     EVALUATIONS,
@@ -27,6 +29,7 @@ from gapath.kernels.memetic.account import (
     POPULATION,
     REROUTE,
     REROUTE_THRESHOLD,
+    ROUGH,
     SHARES,
     START,
     STATUS,
@@ -36,12 +39,11 @@ from gapath.kernels.memetic.account import (
     WALLS,
 )
 from gapath.kernels.memetic.mutations import INSERT, propose, replace
-from gapath.kernels.memetic.polygon import fields_of
+from gapath.kernels.memetic.polygon import fields_of, is_crowded, length_of
 from gapath.kernels.memetic.population import (
     Diary,
     Individuals,
     individuals,
-    length_of,
     noted,
     opened,
     put,
@@ -50,7 +52,7 @@ from gapath.kernels.memetic.population import (
 )
 from gapath.kernels.memetic.rays import ray
 from gapath.kernels.memetic.rerouting import Room, crossed, reroute, walked_path
-from gapath.kernels.memetic.shortening import FIXED, SHORTENING, shortened
+from gapath.kernels.memetic.shortening import FIXED, SHORTENING, running_cost, shortened
 from gapath.kernels.memetic.steps import X_BITS, X_MASK
 from gapath.kernels.rng import Stream, fill, happens, high, low
 
@@ -80,10 +82,10 @@ def evolve(
         Corner-cutting rule.
     least : int
         The least weight of any free field but start and target.
-    settings : (6,) int64
+    settings : (7,) int64
         POPULATION and what follows.
     known : (n,) uint32
-        A path from start to target that is known already, the first of all; or nothing.
+        A path from start to target that is known already, instead of the walls'; or nothing.
     stream : (4,) uint64
         A random stream, advanced in place.
 
@@ -106,7 +108,9 @@ def evolve(
         lower = np.int64(0)
     else:
         lower += least * (max(abs(target_x - start_x), abs(target_y - start_y)) - 1)
-    content = lower + lower * settings[TOLERANCE] // UNIT
+    content = lower
+    if settings[TOLERANCE] > 0:  # of a field less nobody should wait
+        content += max(lower * settings[TOLERANCE] // UNIT, np.int64(least))
     numbers[LOWER], numbers[START] = lower, table[start_y, start_x]
     blocked, straight = ray(table, start_x, start_y, target_x, target_y, rule)
     if blocked == 0 and straight <= content:
@@ -129,14 +133,20 @@ def evolve(
     numbers[STATUS] = count
     if count < 0:
         return numbers, np.empty((0, 2), dtype=np.int32)
+    if settings[ASK] and is_rough(table, path, count):
+        numbers[STATUS], shares[WALLS] = ROUGH, running_cost(table, path, count)[count - 1]
+        return numbers, np.empty((0, 2), dtype=np.int32)
     fields = walked + SHORTENING * count
     size, total, points, costs = shortened(table, path, count, rule, content, True, order, shares)
     # The more a path winds, the less may be gained by another one as long.
     apart = max(abs(target_x - start_x), abs(target_y - start_y))
     budget = fields * settings[EFFORT] // UNIT * apart // max(length_of(points, size), 1)
     population = settings[POPULATION]
-    if total <= content:
-        population = 1  # no room for others
+    if total <= content or known.shape[0]:
+        population = 1  # walls lead nobody to the like of a path that was searched
+    if settings[ASK] and total > content and is_crowded(points, size):
+        numbers[STATUS] = CROWDED
+        return numbers, np.empty((0, 2), dtype=np.int32)
     members = put(individuals(population, size), 0, points, costs, size, total)
     diary = noted(opened(size), members, 1, 0, WALLS, 0)
     n, best, epoch, evaluations = 1, 0, 1, 1
@@ -225,11 +235,12 @@ def evolve(
                 members = with_room(members, size + 2)
                 new = np.empty((2, 2), dtype=np.int32)
                 i, j, count = propose(kind, members.points[row], size, rows, cols, words[1:], new)
+                length = length_of(members.points[row, i : j + 1], j + 1 - i)
                 gain, members.sizes[row] = replace(
                     table, members.points[row], members.costs[row], size, i, j, new, count, rule
                 )
                 members.totals[row] -= max(gain, 0)
-                fields = np.int64(0)
+                fields = length
         spent += FIXED + fields
         evaluations += 1
         if gain > 0:
@@ -239,6 +250,18 @@ def evolve(
             best = row
 
     return finished(table, rule, members, best, epoch, evaluations, diary, numbers, room.path)
+
+
+@kernel
+def is_rough(table: NDArray[np.int32], path: NDArray[np.uint32], count: int) -> bool:
+    """Tell whether the weight changes at more than every fourth step of a path."""
+    changes = 0
+    before = np.int64(table[path[0] >> X_BITS, path[0] & X_MASK])
+    for i in range(1, count):
+        weight = np.int64(table[path[i] >> X_BITS, path[i] & X_MASK])
+        changes += weight != before
+        before = weight
+    return 4 * changes > count
 
 
 @kernel

@@ -7,6 +7,9 @@ from gapath.kernels.jit import kernel
 from gapath.kernels.memetic.rays import append_ray
 from gapath.kernels.memetic.steps import X_BITS
 
+CROWD, FEW = 6, 64
+"""A path is crowded that has a vertex for fewer fields than CROWD, and FEW fields at least."""
+
 
 @kernel
 def splice(
@@ -108,3 +111,20 @@ def fields_of(
         steps = max(abs(x1 - x0), abs(y1 - y0))
         count = append_ray(table, x0, y0, x1, y1, steps, rule, path, count)
     return count, path
+
+
+@kernel
+def length_of(points: NDArray[np.int32], size: int) -> int:
+    """Give how many fields the rays between so many vertices enter."""
+    length = np.int64(0)
+    for k in range(1, size):
+        dx, dy = points[k, 0] - points[k - 1, 0], points[k, 1] - points[k - 1, 1]
+        length += max(abs(dx), abs(dy))
+    return length
+
+
+@kernel
+def is_crowded(points: NDArray[np.int32], size: int) -> bool:
+    """Tell whether obstacles bend a polygon of so many vertices every few fields."""
+    length = length_of(points, size)
+    return length >= FEW and CROWD * size > length

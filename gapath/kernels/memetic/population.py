@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.kernels.jit import kernel
+from gapath.kernels.memetic.polygon import length_of
 from gapath.kernels.memetic.rays import field_at, ray
 
-RUNGS = 16
+RUNGS = 8
 """Places at which two polygons are compared."""
 
 
@@ -113,16 +114,6 @@ def noted(
     changes[n, EPOCH], changes[n, ROW], changes[n, OPERATOR] = epoch, row, operator
     changes[n, GAIN], changes[n, TOTAL], changes[n, END] = gain, members.totals[row], m + size
     return Diary(changes, vertices, counts)
-
-
-@kernel
-def length_of(points: NDArray[np.int32], size: int) -> int:
-    """Give how many fields the rays between so many vertices enter."""
-    length = np.int64(0)
-    for k in range(1, size):
-        dx, dy = points[k, 0] - points[k - 1, 0], points[k, 1] - points[k - 1, 1]
-        length += max(abs(dx), abs(dy))
-    return length
 
 
 @kernel

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from gapath.kernels.jit import kernel
 from gapath.kernels.memetic.account import ASIDE, LOOPS, PULLING, WALLS
-from gapath.kernels.memetic.polygon import fields_of
+from gapath.kernels.memetic.polygon import fields_of, is_crowded
 from gapath.kernels.memetic.rays import ray
 from gapath.kernels.memetic.steps import STEP_X, STEP_Y, X_BITS, X_MASK, may_step
 from gapath.kernels.units import NO_DIAGONALS, OBSTACLE
@@ -331,7 +331,8 @@ def shortened(
     points, costs = np.empty((count, 2), dtype=np.int32), np.empty(count, dtype=np.int64)
     size, total = pull(table, path, count, sums, rule, points, costs)
     pulled = total + 1
-    while enough < total < pulled and size > 2:
+    hopeless = told and is_crowded(points, size)  # others will do that
+    while enough < total < pulled and size > 2 and not hopeless:
         pulled = total
         size, total, points, costs, path = pull_there_and_back(
             table, points, costs, size, rule, path
