@@ -29,7 +29,7 @@ def cross(
     table : (rows, cols) int32
         `GridMap.table`.
     first, second : (n,) uint32
-        Fields (`gapath.kernels.memetic.steps`), none twice in the first.
+        Fields (`gapath.kernels.memetic.steps`).
     first_count, second_count : int
         How many.
     order : (rows * cols,) int32

@@ -2,7 +2,7 @@
 
 They cross the fields of `gapath.kernels.raster.polyline`. Where no diagonal step is allowed a ray
 goes by way of one of the two fields beside it instead: the one that costs less, of equals the one
-in the row of the step's start.
+that it comes to along its longer axis.
 """
 
 import numpy as np
