@@ -1,0 +1,169 @@
+"""The memetic algorithm: what it tells adds up, and no individual ever becomes dearer."""
+
+from typing import NamedTuple
+
+import naive
+import naive_memetic as slow
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from naive_memetic import packed, places, unpacked, walled_problems
+
+from gapath.grid import GridMap
+from gapath.kernels.memetic.account import (
+    BEST,
+    CHANGES,
+    CROSSOVER,
+    EPOCHS,
+    EVALUATIONS,
+    INDIVIDUAL,
+    LOWER,
+    NEWCOMER,
+    NUMBERS,
+    OPERATORS,
+    POINTS,
+    SHARES,
+    STATUS,
+    UNIT,
+    WALLS,
+)
+from gapath.kernels.memetic.evolution import evolve
+from gapath.kernels.memetic.population import END, EPOCH, GAIN, OPERATOR, ROW, TOTAL
+from gapath.kernels.memetic.walls import BOTH, LEFT, NO_WAY, RIGHT
+from gapath.kernels.rng import probability_threshold, stream
+from gapath.problem import CornerCutting
+
+
+class Told(NamedTuple):
+    """What `evolve` told."""
+
+    numbers: list
+    changes: list
+    polygons: list
+    path: list
+
+
+def evolved(problem, population=3, hands=BOTH, effort=4.0, tolerance=0.0, chances=(0.3, 0.5),
+            seed=0, known=()):  # fmt: skip
+    settings = [population, hands, round(effort * UNIT), round(tolerance * UNIT)]
+    settings += [int(probability_threshold(chance)) for chance in chances]
+    way = packed(known)
+    told, path = evolve(
+        problem.map.table, *problem.start, *problem.target, int(problem.corner_cutting),
+        problem.map.least_weight(problem.start, problem.target), np.array(settings), way,
+        stream(seed),
+    )  # fmt: skip
+    assert unpacked(way) == list(known)
+    numbers = told[:NUMBERS].tolist()
+    changes = told[NUMBERS : NUMBERS + 6 * numbers[CHANGES]].reshape(-1, 6).tolist()
+    rest = unpacked(told[NUMBERS + 6 * numbers[CHANGES] :])
+    assert len(rest) == numbers[POINTS]
+    ends = [0, *(change[END] for change in changes)]
+    polygons = [rest[a:b] for a, b in zip(ends, ends[1:], strict=False)]
+    return Told(numbers, changes, polygons, places(path.reshape(-1, 2)))
+
+
+SETTINGS = st.fixed_dictionaries(
+    {
+        "population": st.integers(1, 8),
+        "hands": st.sampled_from([LEFT, RIGHT, BOTH]),
+        "effort": st.sampled_from([0.0, 0.5, 3.0, 30.0]),
+        "tolerance": st.sampled_from([0.0, 0.05, 1.0]),
+        "chances": st.sampled_from([(0.0, 0.0), (0.1, 0.5), (1.0, 0.5), (0.0, 1.0)]),
+        "seed": st.integers(0, 999),
+    }
+)
+
+
+@given(walled_problems(), SETTINGS)
+def test_what_it_tells_adds_up(problem, settings):
+    weights, name = problem.map.weights, problem.corner_cutting.name.lower()
+    told = evolved(problem, **settings)
+    numbers, changes = told.numbers, told.changes
+    optimum = naive.shortest_cost(weights, problem.start, problem.target, name)
+    if optimum == np.inf:
+        assert (numbers[STATUS], changes, told.path) == (NO_WAY, [], [])
+        return
+    optimum = round(optimum * 65536) - slow.weight(weights, problem.start)
+    assert numbers[STATUS] > 0
+    assert numbers[LOWER] <= optimum <= numbers[BEST]
+
+    standing, polygons = {}, {}
+    for number, (change, points) in enumerate(zip(changes, told.polygons, strict=True)):
+        row, gain, total = change[ROW], change[GAIN], change[TOTAL]
+        assert (points[0], points[-1]) == (problem.start, problem.target)
+        assert total == sum(slow.ray_costs(weights, points, name))
+        if change[EPOCH] == 1:
+            assert (gain, change[OPERATOR]) == (0, NEWCOMER if number else WALLS)
+            assert row == len(standing) or total < standing[row]
+        else:
+            assert gain == standing[row] - total > 0 and change[OPERATOR] >= CROSSOVER
+        standing[row], polygons[row] = total, points
+    epochs = [change[EPOCH] for change in changes]
+    assert epochs == sorted(epochs) and epochs[-1] <= numbers[EPOCHS]
+    assert list(standing) == list(range(len(standing))) and len(standing) <= settings["population"]
+    assert numbers[BEST] == min(standing.values()) == standing[numbers[INDIVIDUAL]]
+    assert told.path == slow.fields(weights, polygons[numbers[INDIVIDUAL]], name)
+    assert numbers[EVALUATIONS] >= max(len(changes), numbers[EPOCHS])
+
+    shares = numbers[SHARES:]
+    assert len(shares) == OPERATORS and min(shares) >= 0
+    assert shares[WALLS] - sum(shares[WALLS + 1 :]) == numbers[BEST]
+
+
+@given(walled_problems(), SETTINGS)
+def test_the_same_stream_gives_the_same_to_the_last_bit(problem, settings):
+    assert evolved(problem, **settings) == evolved(problem, **settings)
+
+
+@given(slow.paths(most=12), st.sampled_from([0.0, 4.0]))
+def test_a_known_path_is_the_first(drawn, effort):
+    problem, known = drawn
+    problem = slow.Problem(problem.map, problem.start, known[-1], problem.corner_cutting)
+    told = evolved(problem, effort=effort, known=known)
+    assert told.numbers[STATUS] == len(known)
+    assert told.numbers[SHARES + WALLS] == slow.cost(problem.map.weights, known)
+    assert told.numbers[BEST] <= slow.cost(problem.map.weights, known)
+
+
+def clutter(number):
+    """Obstacles to be passed on either side, on hills."""
+    random = np.random.default_rng(number)
+    y, x = np.mgrid[:60, :90]
+    weights = (abs(x % 28 - 14) + abs(y % 20 - 10) + 2) / 64
+    for left, top in random.integers(4, 82, (60, 2)):
+        weights[top % 56 : top % 56 + 5, left : left + 3] = 1.0
+    weights[28:33, :3] = weights[28:33, -3:] = 0.5
+    return slow.Problem(GridMap("clutter", weights), (1, 30), (88, 30))
+
+
+def test_without_effort_there_is_one_individual_and_one_evaluation():
+    numbers, changes, _, _ = evolved(clutter(0), effort=0.0)
+    assert (numbers[EVALUATIONS], numbers[EPOCHS], len(changes)) == (1, 1, 1)
+
+
+def gained(told):
+    return {change[OPERATOR] for change in told.changes}
+
+
+@pytest.mark.parametrize("population", [1, 4])
+def test_all_operators_gain_and_with_one_individual_nothing_is_crossed(population):
+    told = [evolved(clutter(i), population, effort=60.0, seed=i) for i in range(150)]
+    everything = {WALLS, *range(NEWCOMER, OPERATORS)}
+    if population == 1:
+        everything -= {NEWCOMER, CROSSOVER}
+    assert set().union(*map(gained, told)) == everything
+
+
+def test_each_pair_is_crossed_though_chance_never_has_it():
+    told = [evolved(clutter(i), 4, chances=(0.0, 0.0), seed=i) for i in range(150)]
+    assert any(CROSSOVER in gained(each) for each in told)
+
+
+def test_it_stops_at_a_path_that_is_good_enough():
+    even = GridMap("even", np.where(clutter(0).map.obstacles, 1.0, 0.5))
+    problem = slow.Problem(even, (1, 30), (88, 30), CornerCutting.NO_DIAGONALS)
+    patient, hasty = (evolved(problem, tolerance=t).numbers for t in (0.0, 1.0))
+    assert hasty[LOWER] < patient[BEST] < hasty[BEST] <= 2 * hasty[LOWER]
+    assert hasty[EVALUATIONS] == 1 < patient[EVALUATIONS]
