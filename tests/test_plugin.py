@@ -11,9 +11,9 @@ import subprocess
 import sys
 from pathlib import Path
 
-import forked
 import pandas as pd
 import pytest
+from processes import forked
 
 TESTS = Path(__file__).parent
 ROOT = TESTS.parent

@@ -4,7 +4,7 @@ import re
 import shlex
 from pathlib import Path
 
-import forked
+from processes import forked
 
 PAGE = Path(__file__).parents[1] / "docs" / "questions.md"
 
