@@ -46,8 +46,8 @@ def towards(x: int, y: int, u: int, v: int) -> tuple[int, int]:
     """Give the first step of the ray from (x, y) to another field (u, v)."""
     dx, dy = u - x, v - y
     n = max(abs(dx), abs(dy))
-    step_x = (2 * dx >= n) - (2 * dx < -n)  # along the longer axis always a whole one
-    step_y = (2 * dy >= n) - (2 * dy < -n)
+    step_x = int(2 * dx >= n) - int(2 * dx < -n)  # along the longer axis always a whole one
+    step_y = int(2 * dy >= n) - int(2 * dy < -n)
     return step_x, step_y
 
 
