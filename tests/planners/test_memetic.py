@@ -1,0 +1,151 @@
+"""The memetic planner: never a false proof, settings in range, the same however it is compiled."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from naive_memetic import walled_problems
+
+from gapath.components import build
+from gapath.discovery import yaml_values
+from gapath.errors import InputError
+from gapath.grid import GridMap
+from gapath.kernels.rng import stream
+from gapath.planning.flaw import flaw
+from gapath.planning.shortest_path import shortest_path
+from gapath.problem import CornerCutting, PlanStatus, Problem
+
+NAMES = ["memetic_quick", "memetic_quality"]
+
+
+def make(name="memetic", **values):
+    return build("planner", yaml_values("planner", name) | values, "planner")
+
+
+@pytest.mark.parametrize("name", NAMES)
+@given(problem=walled_problems(most=30), seed=st.integers(0, 1000))
+def test_it_finds_what_astar_finds_and_proves_nothing_false(name, problem, seed):
+    plan, best = make(name).plan(problem, stream(seed)), shortest_path(problem)
+    assert plan.feasible == best.feasible
+    if not plan.feasible:
+        assert plan.status is PlanStatus.INFEASIBLE
+        return
+    assert flaw(problem, plan.path, plan.cost) is None
+    assert plan.cost >= best.cost
+    assert plan.status is not PlanStatus.OPTIMAL or plan.cost == best.cost
+
+
+@pytest.mark.parametrize("hands", ["left", "right", "both"])
+@pytest.mark.parametrize("rule", list(CornerCutting), ids=lambda rule: rule.name.lower())
+def test_each_hand_finds_a_path_and_proves_that_there_is_none(hands, rule):
+    weights = np.full((30, 30), 0.5)
+    weights[5:25, 15], weights[5, 5:16], weights[24, 5:16] = 1.0, 1.0, 1.0
+    for open_at_left in (True, False):
+        weights[5:25, 5] = 0.5 if open_at_left else 1.0
+        problem = Problem(GridMap("bay", weights), (10, 15), (20, 15), rule)
+        assert make(hands=hands).plan(problem, stream(1)).feasible == open_at_left
+
+
+@pytest.mark.parametrize("rule", list(CornerCutting), ids=lambda rule: rule.name.lower())
+def test_a_straight_way_is_proved_optimal(rule):
+    weights = np.full((9, 20), 0.5)
+    weights[3, 5:9] = 1.0
+    plan = make().plan(Problem(GridMap("way", weights), (1, 4), (18, 4), rule), stream(0))
+    assert (plan.status, plan.cost, plan.evaluations) == (PlanStatus.OPTIMAL, 9.0, 1)
+    assert plan.lines().tolist() == [[1, 4], [18, 4]]
+
+
+def noise(number, rows=60, cols=90):
+    """Hills with obstacles strewn on them; the ends are free, but may be walled in."""
+    random = np.random.default_rng(number)
+    y, x = np.mgrid[:rows, :cols]
+    weights = (abs(x % 28 - 14) + abs(y % 20 - 10) + 8) / 64
+    weights[random.random((rows, cols)) < 0.25] = 1.0
+    weights[0, 0] = weights[-1, -1] = 0.5
+    rule = CornerCutting(number % 4)
+    return Problem(GridMap("noise", weights), (0, 0), (cols - 1, rows - 1), rule)
+
+
+def test_more_effort_pays():
+    problems = [problem for problem in map(noise, range(12)) if shortest_path(problem).feasible]
+    best, quick, quality = (
+        [planner.plan(problem, stream(1)).cost for problem in problems]
+        for planner in (build("planner", yaml_values("planner", "astar"), "planner"),
+                        *map(make, NAMES))
+    )  # fmt: skip
+    assert len(problems) > 6
+    assert sum(best) < sum(quality) < sum(quick)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "right"),
+    [
+        ("population", 0, "an integer from 1 to 8"),
+        ("population", 9, "an integer from 1 to 8"),
+        ("population", 2.5, "a value of type int"),
+        ("hands", "", "one of left, right, both"),
+        ("hands", "Left", "one of left, right, both"),
+        ("effort", -0.5, "a number from 0 to 1000000"),
+        ("effort", 1e7, "a number from 0 to 1000000"),
+        ("effort", float("nan"), "a number from 0 to 1000000"),
+        ("tolerance", -0.01, r"a number in \[0, 1\]"),
+        ("tolerance", 1.5, r"a number in \[0, 1\]"),
+        ("crossover_probability", 1.01, r"a number in \[0, 1\]"),
+        ("crossover_probability", float("nan"), r"a number in \[0, 1\]"),
+        ("reroute_probability", -1.0, r"a number in \[0, 1\]"),
+        ("reroute_probability", float("inf"), r"a number in \[0, 1\]"),
+    ],
+)
+def test_settings_out_of_range_are_refused(name, value, right):
+    with pytest.raises(InputError, match=rf"planner\.{name}: got '?{value}'?, expected {right}"):
+        make(**{name: value})
+
+
+def test_settings_at_the_ends_of_their_ranges_plan():
+    """Probabilities of one, no time, and all the time that there can be, on a tiny map."""
+    weights = np.full((4, 4), 0.5)
+    weights[1, 1] = 1.0
+    problem = Problem(GridMap("tiny", weights), (0, 1), (3, 1))
+    for population in (1, 8):
+        for effort in (0.0, 100.0):
+            for chance in (0.0, 1.0):
+                plan = make(
+                    population=population, effort=effort, tolerance=0.0,
+                    crossover_probability=chance, reroute_probability=chance,
+                ).plan(problem, stream(2))  # fmt: skip
+                assert plan.cost == shortest_path(problem).cost
+
+
+def small():
+    """What must not depend on how kernels are compiled: plans, and how they came about."""
+    told = []
+    for number in range(12):
+        plan = make("memetic_quality", effort=10.0).plan(noise(number, 24, 36), stream(number))
+        population = plan.evolution.population if plan.feasible else None
+        told.append([plan.status.name, plan.cost, plan.evaluations, plan.path.tolist()])
+        told[-1] += [part.tolist() for part in population[:7]] if population else []
+    return told
+
+
+def test_plans_are_the_same_without_the_compiler():
+    code = "import conftest, json, test_memetic; print(json.dumps(test_memetic.small()))"
+    here, above = Path(__file__).parent, Path(__file__).parents[1]
+    there = subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", code],
+        env=os.environ | {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": f"{above}{os.pathsep}{here}"},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=300,
+    )
+    assert there.returncode == 0, there.stderr
+    plans = json.loads(json.dumps(small()))
+    assert json.loads(there.stdout) == plans
+    assert {"FOUND", "INFEASIBLE"} <= {plan[0] for plan in plans}
+    assert max(plan[2] for plan in plans) > 50
