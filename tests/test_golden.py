@@ -50,6 +50,11 @@ M22 = [
     )
     for scene in ("m22_scene03", "m22_scene07")
 ]
+MEMETIC = [
+    (map_class, planner)
+    for planner in ("memetic_quick", "memetic_quality")
+    for map_class in (*CLASSES, "field_noise", "field_terrain")
+]
 
 
 def run(folder, map_name, planner, trials=2, **values):
@@ -136,6 +141,12 @@ def test_s04_gives_the_golden_results(drawing, planner, tmp_path, update_golden)
 def test_m22_gives_the_golden_results(scene, planner, tmp_path, update_golden):
     ours = results(tmp_path, scene, planner)
     check(ours, "m22", f"{scene} {planner}", update_golden)
+
+
+@pytest.mark.parametrize(("map_class", "planner"), MEMETIC)
+def test_memetic_gives_the_golden_results(map_class, planner, tmp_path, update_golden):
+    ours = results(tmp_path, map_class, planner)
+    check(ours, "memetic", f"{map_class} {planner}", update_golden)
 
 
 def test_two_runs_give_the_same_log_byte_for_byte(tmp_path):
