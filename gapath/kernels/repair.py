@@ -1,23 +1,28 @@
 """A path that was cut, repaired where it was cut: along the walls, round what is in the way.
 
-The wall is followed from behind the cut back to the robot, not the other way: where a wall is met
-hardly changes then while the robot goes along it, so that the same hand gets round first, and the
-robot turns back seldom.
+The wall is followed from behind the cut back to the robot, not the other way: where it is met then
+changes little while the robot goes along it, so that the same hand gets round first, and the robot
+seldom turns back. A path that is all new only takes the place of pieces of the repaired one where
+that is worth a change of sides.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gapath.kernels.jit import kernel
+from gapath.kernels.memetic.crossing import cross
 from gapath.kernels.memetic.polygon import fields_of
 from gapath.kernels.memetic.rerouting import walked_path
-from gapath.kernels.memetic.shortening import shortened
+from gapath.kernels.memetic.shortening import cut_loops, pull, pull_there_and_back, running_cost
 from gapath.kernels.memetic.steps import X_BITS, X_MASK, may_step
 from gapath.kernels.memetic.walls import BOTH, NO_WAY, grown
 
-TWICE, BESIDE = 2, 64
-"""What comes behind the cut is made shorter, too: twice as many fields as lead round, and so many
-more."""
+BEYOND = 8
+"""Fields behind the cut, to where the wall is followed: nearer to the target one hand is first."""
+
+CHANGE, NEAR = 16, 4
+"""Fields that a new path has to save, and how many more than possible a repaired one may have
+for the least saving to do."""
 
 NO_LIMIT = 1 << 40
 """Steps along walls."""
@@ -41,16 +46,59 @@ def behind_cuts(table: NDArray[np.int32], path: NDArray[np.int32], at: int, rule
     Returns
     -------
     int
-        Index of a free field from which the path is free to its end; at most n - 1.
+        Index of the first field, ``at`` or later, from which the path is free to its end.
     """
-    j = path.shape[0] - 1
-    while j > at:
-        x, y = np.int64(path[j - 1, 0]), np.int64(path[j - 1, 1])
-        u, v = np.int64(path[j, 0]), np.int64(path[j, 1])
+    i = path.shape[0] - 1
+    u, v = np.int64(path[i, 0]), np.int64(path[i, 1])
+    while i > at:
+        x, y = np.int64(path[i - 1, 0]), np.int64(path[i - 1, 1])
         if not may_step(table, u, v, x, y, rule):
             break
-        j -= 1
-    return j
+        u, v = x, y
+        i -= 1
+    return i
+
+
+@kernel
+def straightened(
+    table: NDArray[np.int32],
+    path: NDArray[np.uint32],
+    count: int,
+    rule: int,
+    order: NDArray[np.int32],
+) -> tuple[int, int, NDArray[np.uint32]]:
+    """Cut off a path's loops and pull it straight, from the start, from the target, and again.
+
+    Parameters
+    ----------
+    table : (rows, cols) int32
+        The known map.
+    path : (n,) uint32
+        Fields (`gapath.kernels.memetic.steps`); changed in place.
+    count : int
+        How many.
+    rule : int
+        Corner-cutting rule.
+    order : (rows * cols,) int32
+        Anything; overwritten.
+
+    Returns
+    -------
+    count, cost : int
+        How many fields there are, and what they cost, the first one left out.
+    path : (m,) uint32
+        Where they are.
+    """
+    count = cut_loops(table, path, count, order, rule)
+    sums = running_cost(table, path, count)
+    points, costs = np.empty((count, 2), dtype=np.int32), np.empty(count, dtype=np.int64)
+    size, cost = pull(table, path, count, sums, rule, points, costs)
+    if size > 2:
+        size, cost, points, costs, path = pull_there_and_back(
+            table, points, costs, size, rule, path
+        )
+    count, path = fields_of(table, points, size, False, rule, path)
+    return count, cost, path
 
 
 @kernel
@@ -63,6 +111,7 @@ def repaired(
     target_x: int,
     target_y: int,
     rule: int,
+    least: int,
     order: NDArray[np.int32],
 ) -> tuple[NDArray[np.int32], int]:
     """Repair a path from the robot's field to the target.
@@ -79,6 +128,8 @@ def repaired(
         Free fields, the ends of what is left of the path.
     rule : int
         Corner-cutting rule.
+    least : int
+        The least weight of any free field but these two.
     order : (rows * cols,) int32
         Anything; overwritten.
 
@@ -90,29 +141,37 @@ def repaired(
         The sum of their weights, in units of 1 / SCALE.
     """
     x, y = np.int64(robot_x), np.int64(robot_y)
-    u, v = np.int64(target_x), np.int64(target_y)
-    stream, none = np.zeros(4, dtype=np.uint64), np.empty(0, dtype=np.int64)  # nothing is drawn
+    end_x, end_y = np.int64(target_x), np.int64(target_y)
+    u, v = end_x, end_y
     n = path.shape[0]
     behind = n
     if n:
-        behind = behind_cuts(table, path, at, rule)
+        behind = min(behind_cuts(table, path, at, rule) + BEYOND, n - 1)
         u, v = np.int64(path[behind, 0]), np.int64(path[behind, 1])
-    way = np.empty(256, dtype=np.uint32)
+    stream = np.zeros(4, dtype=np.uint64)  # nothing is drawn from it
+    way = np.empty(n + 256, dtype=np.uint32)
     count, _, way = walked_path(table, x, y, u, v, rule, BOTH, NO_LIMIT, False, True, way, stream)
     if count == NO_WAY:  # nor to the target, to which the path is free from there
         return np.empty((0, 2), dtype=np.int32), 0
-    end = min(behind + 1 + TWICE * count + BESIDE, n)
-    way = grown(way, count, count + max(end - behind, 0))
-    for k in range(behind + 1, end):
-        way[count] = (np.int64(path[k, 1]) << X_BITS) + path[k, 0]
+    way = grown(way, count, count + n - behind)
+    for i in range(behind + 1, n):
+        way[count] = (np.int64(path[i, 1]) << X_BITS) + path[i, 0]
         count += 1
-    size, cost, points, _ = shortened(table, way, count, rule, 0, True, order, none)
-    count, way = fields_of(table, points, size, False, rule, way)
-    whole = np.empty((count + n - end, 2), dtype=np.int32)
-    for k in range(count):
-        whole[k, 0], whole[k, 1] = way[k] & X_MASK, way[k] >> X_BITS
-    cost += np.int64(table[y, x])
-    for k in range(end, n):
-        whole[count + k - end] = path[k]
-        cost += np.int64(table[path[k, 1], path[k, 0]])
-    return whole, cost
+    count, cost, way = straightened(table, way, count, rule, order)
+
+    lower = table[end_y, end_x] + least * (max(abs(end_x - x), abs(end_y - y)) - 1)
+    if cost > lower:
+        new = np.empty(256, dtype=np.uint32)
+        more, _, new = walked_path(
+            table, x, y, end_x, end_y, rule, BOTH, NO_LIMIT, False, False, new, stream
+        )
+        more, _, new = straightened(table, new, more, rule, order)
+        child = np.empty(count + more, dtype=np.uint32)
+        more, less, _ = cross(table, way, count, new, more, order, child)
+        enough = 1 if cost <= lower + NEAR * least else CHANGE * least + 1
+        if less <= cost - enough:
+            way, count, cost = child, more, less
+    fields = np.empty((count, 2), dtype=np.int32)
+    for i in range(count):
+        fields[i, 0], fields[i, 1] = way[i] & X_MASK, way[i] >> X_BITS
+    return fields, cost + np.int64(table[y, x])

@@ -1,9 +1,9 @@
 """The memetic planner's walls and strings in a drive: a path is repaired where it was cut.
 
 The robot follows its path while that is free. Where it is cut, walls are followed round what is
-in the way, from behind the cut back to the robot, loops are cut off and strings pulled; the rest
-of the path stays. Unknown fields count as free, so where the target can be reached at all it is
-reached: a hand that comes round the wall proves where it cannot.
+in the way, loops are cut off and strings pulled (`gapath.kernels.repair`), and a path that is all
+new is crossed with what comes out. Unknown fields count as free, so where the target can be reached
+at all it is reached: a hand that comes round the wall proves where it cannot.
 """
 
 from dataclasses import dataclass
@@ -45,15 +45,14 @@ class Navigator:
             if remaining_cost(table, state.path, state.at, rule) >= 0:
                 return state.go_on(to_end=True)
             path = state.path
+        least = query.map.least_weight(query.start, query.target)
         path, cost = repaired(
-            table, path, state.at, *query.start, *query.target, rule, state.memory
+            table, path, state.at, *query.start, *query.target, rule, least, state.memory
         )
-        status = PlanStatus.FOUND if len(path) else PlanStatus.INFEASIBLE
-        plan = Plan(status, path, cost / SCALE) if len(path) else Plan(status)
-        calls = (Call("A" if state.returning else "C", 0, plan, plan.feasible),)
-        if not plan.feasible:
-            return state.go_back(calls)
-        return state.adopt(path).go_on(calls, to_end=True)
+        found = len(path) > 0
+        plan = Plan(PlanStatus.FOUND, path, cost / SCALE) if found else Plan(PlanStatus.INFEASIBLE)
+        calls = (Call("A" if state.returning else "C", 0, plan, found),)
+        return state.adopt(path).go_on(calls, to_end=True) if found else state.go_back(calls)
 
 
 _NONE: Path = np.empty((0, 2), dtype=np.int32)

@@ -1,6 +1,7 @@
 """Paths that were cut and are repaired, against what must hold of any path."""
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from strategies import problems
@@ -46,7 +47,7 @@ def test_a_repaired_path_is_free_and_there_is_one_wherever_there_can_be(case):
     grid, rule = problem.map, int(problem.corner_cutting)
     for path, robot in ((old, at), (NOTHING, 0)):
         new, cost = repaired(
-            grid.table, path, robot, *problem.start, *problem.target, rule, order_of(grid)
+            grid.table, path, robot, *problem.start, *problem.target, rule, 0, order_of(grid)
         )
         assert (len(new) > 0) == shortest_path(problem).feasible
         if len(new):
@@ -66,15 +67,32 @@ def test_the_end_of_a_path_is_free_from_behind_its_cuts(case):
     assert behind == at or remaining_cost(table, path, behind - 1, rule) < 0
 
 
-def test_only_what_is_near_the_cut_changes():
+def route(grid, path, at, start, target):
+    least = int(grid.table.min())
+    return repaired(grid.table, path, at, *start, *target, 0, least, order_of(grid))
+
+
+def test_what_lies_behind_the_next_wall_stays():
     weights = np.full((60, 1000), 0.5)
-    weights[20:40, 500] = 1.0
     weights[:50, 700] = 1.0
-    grid = GridMap("walls", weights)
-    x = np.arange(1000)
-    y = 30 + np.clip(30 - np.abs(x - 700), 0, 20)  # round the second wall
-    path = np.stack([x, y], axis=1).astype(np.int32)
-    new, _ = repaired(grid.table, path, 480, 480, 30, 999, 30, 0, order_of(grid))
-    assert new[-350:].tolist() == path[-350:].tolist()
-    assert not grid.obstacles[new[:, 1], new[:, 0]].any()
-    assert 10 <= np.abs(new[:60, 1] - 30).max() <= 11  # straight to the wall's end and on
+    path, _ = route(GridMap("one", weights), NOTHING, 0, (0, 30), (999, 30))
+    weights[:45, 500] = 1.0
+    grid = GridMap("two", weights)
+    new, _ = route(grid, path, 480, tuple(path[480].tolist()), (999, 30))
+    assert new[-299:].tolist() == path[-299:].tolist()
+    assert new[20].tolist() == [500, 45] != path[500].tolist()
+
+
+@pytest.mark.parametrize(("longer", "keeps"), [(6, True), (11, False)])
+def test_it_changes_sides_only_where_that_saves_enough(longer, keeps):
+    """A path round the farther end of a wall is cut near the robot; the other end saves 2 a row."""
+    weights = np.full((120, 150), 0.5)
+    weights[30 : 71 + longer, 75] = 1.0
+    start, target, end = (65, 50), (85, 50), 71 + longer
+    corner = np.arange(51, end + 1)
+    left, right = np.minimum(65 + corner - 50, 74), np.minimum(76 + end - corner, 85)
+    down, up = np.stack([left, corner], axis=1), np.stack([right, corner], axis=1)[::-1]
+    around = np.concatenate([[start], down, [[75, end]], up, [[85, 50]]]).astype(np.int32)
+    weights[around[2, 1], around[2, 0]] = 1.0
+    new, _ = route(GridMap("wall", weights), around, 0, start, target)
+    assert (new[:, 1].max() > 60) == keeps
