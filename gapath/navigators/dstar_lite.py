@@ -13,8 +13,8 @@ from gapath.driving.navigation import Call, Decision, Situation, StreamOf
 from gapath.driving.past_path import Track
 from gapath.errors import require
 from gapath.grid import Field
-from gapath.kernels import dstar_lite as kernels
-from gapath.kernels.dstar_lite import LENGTH_BITS, MAX_FIELDS, Heuristic, Search
+from gapath.kernels.rivals import dstar_lite as kernels
+from gapath.kernels.rivals.dstar_lite import LENGTH_BITS, MAX_FIELDS, Heuristic, Search
 from gapath.kernels.units import SCALE
 from gapath.problem import Plan, PlanStatus, Query
 
