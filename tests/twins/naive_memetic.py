@@ -211,25 +211,26 @@ def places(points):
 
 @st.composite
 def walled_problems(draw, most=20):
-    """Noise, walls with gaps, or nothing in the way; rows and columns from one on."""
-    rows, cols = draw(st.integers(1, most)), draw(st.integers(1, most))
+    """Noise, walls with gaps, or nothing in the way; now and then one row or column."""
+    rule = draw(st.sampled_from(list(CornerCutting)))
     random = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
-    floor_weights = draw(st.sampled_from([[0.0], [0.5], [0.0, 0.25, 0.999], [0.25, 1 / 3, 0.7]]))
-    values = random.choice(floor_weights, (rows, cols))
+    rows, cols = np.where(random.random(2) < 0.1, 1, random.integers(2, most + 1, 2)).tolist()
+    ground = [[0.0], [0.5], [0.0, 0.25, 0.999], [0.25, 1 / 3, 0.7]][random.integers(4)]
+    values = random.choice(ground, (rows, cols))
     kind = draw(st.sampled_from(["noise", "walls", "nothing"]))
     if kind == "noise":
-        values[random.random((rows, cols)) < draw(st.sampled_from([0.1, 0.3, 0.45, 0.6]))] = 1.0
+        values[random.random((rows, cols)) < random.choice([0.05, 0.1, 0.3, 0.45])] = 1.0
     if kind == "walls":
-        for _ in range(draw(st.integers(1, 8))):
+        for _ in range(random.integers(1, 9)):
             wall = values if random.integers(2) else values.T
             row = wall[random.integers(len(wall))]
             gap = random.integers(len(row))
             row[:gap], row[gap + 1 :] = 1.0, 1.0
-    spots = st.tuples(st.integers(0, cols - 1), st.integers(0, rows - 1))
-    start, target = draw(spots), draw(spots)
+    start, target = (tuple(random.integers(0, (cols, rows)).tolist()) for _ in range(2))
+    if random.random() < 0.05:
+        target = start
     for x, y in (start, target):
-        values[y, x] = draw(st.sampled_from([0.0, 0.5]))
-    rule = draw(st.sampled_from(list(CornerCutting)))
+        values[y, x] = random.choice([0.0, 0.5])
     return Problem(GridMap("walled", values), start, target, rule)
 
 
@@ -237,8 +238,9 @@ def walled_problems(draw, most=20):
 def rays(draw):
     """A problem, and the end of a ray from its start: any field."""
     problem = draw(walled_problems())
-    rows, cols = problem.map.weights.shape
-    return problem, draw(st.tuples(st.integers(0, cols - 1), st.integers(0, rows - 1)))
+    cells = problem.map.weights.size
+    x, y = np.divmod(draw(st.integers(0, 2**32 - 1)) % cells, problem.map.rows)
+    return problem, (int(x), int(y))
 
 
 @st.composite

@@ -243,7 +243,7 @@ def evolve(
                 fields = length
         spent += FIXED + fields
         evaluations += 1
-        if gain > 0:
+        if gain > 0 or (gain == 0 and operator >= VERTICES):  # as cheap, with fewer vertices
             diary = noted(diary, members, epoch, row, operator, gain)
         if members.totals[row] < before:
             shares[operator] += before - members.totals[row]
