@@ -25,7 +25,7 @@ def parents(draw):
 
 def crossed(problem, first, second, seed=0):
     random = np.random.default_rng(seed)
-    order = random.integers(-(2**31), 2**31, problem.map.table.size).astype(np.int32)
+    order = random.integers(-3, 99, problem.map.table.size).astype(np.int32)
     child = np.empty(len(first) + len(second), dtype=np.uint32)
     count, cost, pieces = cross(
         problem.map.table, packed(first), len(first), packed(second), len(second), order, child

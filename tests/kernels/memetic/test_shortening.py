@@ -33,7 +33,7 @@ def rules(problem):
 def rubbish(grid, seed=0):
     """Room for the order of fields, which may hold anything."""
     random = np.random.default_rng(seed)
-    return random.integers(-(2**31), 2**31, grid.table.size).astype(np.int32)
+    return random.integers(-3, 99, grid.table.size).astype(np.int32)
 
 
 @given(paths(), st.integers(0, 9))
@@ -149,6 +149,22 @@ def test_shortened_paths_are_polygons_of_the_same_ends_and_shares_add_up(drawn, 
         NOTHING,
     )  # fmt: skip
     assert (again[0], again[1], places(again[2][: again[0]])) == (size, total, found)
+
+
+def test_a_look_aside_does_not_go_through_what_is_dearer():
+    """Between the legs of a way that costs nothing lies heavy ground, and one lane through it."""
+    path = [(1, y) for y in range(40)] + [(x, 39) for x in range(2, 20)]
+    path += [(19, y) for y in range(38, -1, -1)]
+    for lane in (None, 8):
+        weights = np.full((40, 21), 0.5)
+        weights[tuple(np.array(path).T[::-1])] = 0.0
+        if lane:
+            weights[lane] = 0.0
+        grid, short = GridMap("lane", weights), np.empty(len(path), dtype=np.uint32)
+        sums = running_cost(grid.table, packed(path), len(path))
+        count = look_aside(grid.table, packed(path), len(path), sums, rubbish(grid), short)
+        crossed = [(x, lane) for x in range(2, 19)] if lane else []
+        assert [place for place in unpacked(short[:count]) if place not in path] == crossed
 
 
 def test_a_dead_end_that_a_hand_followed_is_left_by_a_look_aside():
