@@ -65,9 +65,10 @@ def straightened(
     path: NDArray[np.uint32],
     count: int,
     rule: int,
+    well: bool,
     order: NDArray[np.int32],
 ) -> tuple[int, int, NDArray[np.uint32]]:
-    """Cut off a path's loops and pull it straight, from the start, from the target, and again.
+    """Cut off a path's loops and pull it straight.
 
     Parameters
     ----------
@@ -79,6 +80,8 @@ def straightened(
         How many.
     rule : int
         Corner-cutting rule.
+    well : bool
+        Also from the target back, and again.
     order : (rows * cols,) int32
         Anything; overwritten.
 
@@ -93,7 +96,7 @@ def straightened(
     sums = running_cost(table, path, count)
     points, costs = np.empty((count, 2), dtype=np.int32), np.empty(count, dtype=np.int64)
     size, cost = pull(table, path, count, sums, rule, points, costs)
-    if size > 2:
+    if well and size > 2:
         size, cost, points, costs, path = pull_there_and_back(
             table, points, costs, size, rule, path
         )
@@ -157,7 +160,7 @@ def repaired(
     for i in range(behind + 1, n):
         way[count] = (np.int64(path[i, 1]) << X_BITS) + path[i, 0]
         count += 1
-    count, cost, way = straightened(table, way, count, rule, order)
+    count, cost, way = straightened(table, way, count, rule, True, order)
 
     lower = table[end_y, end_x] + least * (max(abs(end_x - x), abs(end_y - y)) - 1)
     if cost > lower:
@@ -165,7 +168,7 @@ def repaired(
         more, _, new = walked_path(
             table, x, y, end_x, end_y, rule, BOTH, NO_LIMIT, False, False, new, stream
         )
-        more, _, new = straightened(table, new, more, rule, order)
+        more, _, new = straightened(table, new, more, rule, False, order)
         child = np.empty(count + more, dtype=np.uint32)
         more, less, _ = cross(table, way, count, new, more, order, child)
         enough = 1 if cost <= lower + NEAR * least else CHANGE * least + 1
