@@ -163,7 +163,8 @@ def repaired(
     count, cost, way = straightened(table, way, count, rule, True, order)
 
     lower = table[end_y, end_x] + least * (max(abs(end_x - x), abs(end_y - y)) - 1)
-    if cost > lower:
+    enough = 1 if cost <= lower + NEAR * least else CHANGE * least + 1
+    if cost - enough >= lower:
         new = np.empty(256, dtype=np.uint32)
         more, _, new = walked_path(
             table, x, y, end_x, end_y, rule, BOTH, NO_LIMIT, False, False, new, stream
@@ -171,7 +172,6 @@ def repaired(
         more, _, new = straightened(table, new, more, rule, False, order)
         child = np.empty(count + more, dtype=np.uint32)
         more, less, _ = cross(table, way, count, new, more, order, child)
-        enough = 1 if cost <= lower + NEAR * least else CHANGE * least + 1
         if less <= cost - enough:
             way, count, cost = child, more, less
     fields = np.empty((count, 2), dtype=np.int32)
