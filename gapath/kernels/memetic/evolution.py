@@ -188,6 +188,8 @@ def evolve(
             shares[NEWCOMER] += before - total
 
     pairs = n * (n - 1) // 2  # each is crossed once before chance decides
+    if settings[CROSSOVER_THRESHOLD] == 0:
+        pairs = 0
     first = evaluations
     while spent < budget and members.totals[best] > content:
         tried = evaluations - first
@@ -224,7 +226,8 @@ def evolve(
             size = members.sizes[row]
             # What pays the least weight everywhere can only become cheaper elsewhere.
             bent = members.totals[row] > least * length_of(members.points[row], size)
-            if size > 2 and (not bent or happens(words[0], np.uint64(settings[REROUTE_THRESHOLD]))):
+            reroutes = np.uint64(settings[REROUTE_THRESHOLD])
+            if size > 2 and reroutes and (not bent or happens(words[0], reroutes)):
                 operator = REROUTE
                 gain, fields, members, room = reroute(
                     table, members, row, least, rule, hands, words[2:], room, stream
