@@ -16,6 +16,7 @@ from gapath.kernels.memetic.account import (
     BEST,
     CHANGES,
     CROSSOVER,
+    CROWDED,
     EPOCHS,
     EVALUATIONS,
     INDIVIDUAL,
@@ -24,6 +25,7 @@ from gapath.kernels.memetic.account import (
     NUMBERS,
     OPERATORS,
     POINTS,
+    ROUGH,
     SHARES,
     STATUS,
     UNIT,
@@ -47,9 +49,9 @@ class Told(NamedTuple):
 
 
 def evolved(problem, population=3, hands=BOTH, effort=4.0, tolerance=0.0, chances=(0.3, 0.5),
-            seed=0, known=()):  # fmt: skip
+            seed=0, known=(), ask=False):  # fmt: skip
     settings = [population, hands, round(effort * UNIT), round(tolerance * UNIT)]
-    settings += [int(probability_threshold(chance)) for chance in chances]
+    settings += [int(probability_threshold(chance)) for chance in chances] + [int(ask)]
     way = packed(known)
     told, path = evolve(
         problem.map.table, *problem.start, *problem.target, int(problem.corner_cutting),
@@ -126,9 +128,20 @@ def test_a_known_path_is_the_first(drawn, effort):
     problem, known = drawn
     problem = slow.Problem(problem.map, problem.start, known[-1], problem.corner_cutting)
     told = evolved(problem, effort=effort, known=known)
-    assert told.numbers[STATUS] == len(known)
-    assert told.numbers[SHARES + WALLS] == slow.cost(problem.map.weights, known)
+    if told.numbers[STATUS] != 2:  # the straight line needs no path
+        assert told.numbers[STATUS] == len(known)
+        assert told.numbers[SHARES + WALLS] == slow.cost(problem.map.weights, known)
     assert told.numbers[BEST] <= slow.cost(problem.map.weights, known)
+
+
+@given(walled_problems(most=30), st.integers(0, 99))
+def test_who_asks_is_told_of_a_first_path_alone_or_the_same(problem, seed):
+    asked, told = (evolved(problem, seed=seed, ask=ask) for ask in (True, False))
+    if asked.numbers[STATUS] in (ROUGH, CROWDED):
+        assert told.numbers[STATUS] > 0
+        assert asked[1:] == ([], [], [])
+    else:
+        assert asked == told
 
 
 def clutter(number):
@@ -151,7 +164,7 @@ def gained(told):
     return {change[OPERATOR] for change in told.changes}
 
 
-@pytest.mark.parametrize(("population", "maps"), [(1, 24), (4, 6)])
+@pytest.mark.parametrize(("population", "maps"), [(1, 24), (4, 20)])
 def test_all_operators_gain_and_with_one_individual_nothing_is_crossed(population, maps):
     told = [evolved(clutter(i), population, effort=60.0, seed=i) for i in range(maps)]
     everything = {WALLS, *range(NEWCOMER, OPERATORS)}
