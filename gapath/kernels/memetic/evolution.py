@@ -22,6 +22,7 @@ from gapath.kernels.memetic.account import (
     EVALUATIONS,
     HANDS,
     INDIVIDUAL,
+    LOOPS,
     LOWER,
     NEWCOMER,
     NUMBERS,
@@ -52,7 +53,7 @@ from gapath.kernels.memetic.population import (
 )
 from gapath.kernels.memetic.rays import ray
 from gapath.kernels.memetic.rerouting import Room, crossed, reroute, walked_path
-from gapath.kernels.memetic.shortening import FIXED, SHORTENING, running_cost, shortened
+from gapath.kernels.memetic.shortening import FIXED, SHORTENING, cut_loops, running_cost, shortened
 from gapath.kernels.memetic.steps import X_BITS, X_MASK
 from gapath.kernels.rng import Stream, fill, happens, high, low
 
@@ -190,7 +191,7 @@ def evolve(
     pairs = n * (n - 1) // 2  # each is crossed once before chance decides
     if settings[CROSSOVER_THRESHOLD] == 0:
         pairs = 0
-    first = evaluations
+    first, bent_once = evaluations, False
     while spent < budget and members.totals[best] > content:
         tried = evaluations - first
         epoch = 2 + tried // n
@@ -243,6 +244,7 @@ def evolve(
                     table, members.points[row], members.costs[row], size, i, j, new, count, rule
                 )
                 members.totals[row] -= max(gain, 0)
+                bent_once |= gain > 0
                 fields = length
         spent += FIXED + fields
         evaluations += 1
@@ -252,6 +254,20 @@ def evolve(
             shares[operator] += before - members.totals[row]
             best = row
 
+    if bent_once:  # vertices that moved may leave a spur, which the path goes there and back
+        count, path = fields_of(
+            table, members.points[best], members.sizes[best], False, rule, room.path
+        )
+        short = cut_loops(table, path, count, order, rule)
+        if short < count:
+            size, total, points, costs = shortened(
+                table, path, short, rule, lower, False, order, none
+            )
+            gain = members.totals[best] - total
+            members = put(members, best, points, costs, size, total)
+            diary = noted(diary, members, epoch, best, LOOPS, gain)
+            shares[LOOPS] += gain
+        room = Room(order, path, room.other, room.child)
     return finished(table, rule, members, best, epoch, evaluations, diary, numbers, room.path)
 
 

@@ -68,10 +68,9 @@ def cut_loops(
             there = last < i < count and path[np.uint64(i)] == (v << X_BITS) + u
             if there and may_step(table, x, y, u, v, rule):
                 last = i
-        to = np.int64(path[last])
-        at = max(last, np.int64(order[(to >> X_BITS) * cols + (to & X_MASK)]))
-        path[short] = to
+        path[short] = path[last]
         short += 1
+        at = last
     return short
 
 

@@ -173,9 +173,12 @@ def test_all_operators_gain_and_with_one_individual_nothing_is_crossed(populatio
     assert set().union(*map(gained, told)) == everything
 
 
-def test_each_pair_is_crossed_though_chance_never_has_it():
-    told = [evolved(clutter(i), 4, effort=30.0, chances=(0.0, 0.0), seed=i) for i in range(6)]
-    assert any(CROSSOVER in gained(each) for each in told)
+@pytest.mark.parametrize(("chance", "crosses"), [(0.0, False), (1e-9, True)])
+def test_each_pair_is_crossed_though_chance_hardly_has_it_but_not_where_it_never_does(
+    chance, crosses
+):
+    told = [evolved(clutter(i), 4, effort=30.0, chances=(chance, 0.0), seed=i) for i in range(6)]
+    assert any(CROSSOVER in gained(each) for each in told) == crosses
 
 
 def test_it_stops_at_a_path_that_is_good_enough():
