@@ -23,11 +23,11 @@ from gapath.kernels.memetic.account import (
     EPOCHS,
     INDIVIDUAL,
     NUMBERS,
-    ROUGH,
     SEARCH,
     SHARES,
     START,
     STATUS,
+    UNEVEN,
     UNIT,
 )
 from gapath.kernels.memetic.evolution import evolve
@@ -129,8 +129,8 @@ class Planner:
         ends, settings = (x, y, u, v), self.kernel_settings
         told, path = evolve(table, *ends, int(rule), least, settings, _UNKNOWN, stream)
         expansions, proved = 0, False
-        if told[STATUS] in (ROUGH, CROWDED):
-            large = told[STATUS] == ROUGH and table.size > LARGE
+        if told[STATUS] in (UNEVEN, CROWDED):
+            large = told[STATUS] == UNEVEN and table.size > LARGE
             searched = coarse_path(problem) if large else shortest_path(problem)
             expansions, proved = searched.expansions, not large
             known = (searched.path[:, 1].astype(np.uint32) << X_BITS) | searched.path[:, 0]

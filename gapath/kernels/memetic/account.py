@@ -3,7 +3,7 @@
 POPULATION, HANDS, EFFORT, TOLERANCE, CROSSOVER_THRESHOLD, REROUTE_THRESHOLD, ASK = range(7)
 """What the kernel is set to: EFFORT and TOLERANCE in units of 1 / `UNIT`, probabilities as
 `gapath.kernels.rng.probability_threshold` gives them; ASK is 1 to end as soon as the first path
-is found to be `ROUGH` or `CROWDED`. (numba takes long to look at a record.)"""
+is found to be `UNEVEN` or `CROWDED`. (numba takes long to look at a record.)"""
 
 UNIT = 1024
 
@@ -20,6 +20,7 @@ what no path can undercut; the start's weight; which individual is best; epochs;
 newcomers, crossovers and mutations were tried; what the diary holds; and how much each operator
 lowered the cost of the best individual, of WALLS what the first path costs."""
 
-ROUGH, CROWDED = -3, -4
-"""STATUS where nothing but a first path was made, since others say more than walls do: ROUGH where
-weights change from field to field, CROWDED where obstacles bend it every few fields."""
+UNEVEN, CROWDED = -3, -4
+"""STATUS where nothing but a first path was made, since others say more than walls do: UNEVEN where
+the first path pays more than the least weight somewhere, CROWDED where obstacles bend it every few
+fields, or leave corridors of a field or two."""

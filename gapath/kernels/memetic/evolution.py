@@ -30,17 +30,17 @@ from gapath.kernels.memetic.account import (
     POPULATION,
     REROUTE,
     REROUTE_THRESHOLD,
-    ROUGH,
     SHARES,
     START,
     STATUS,
     TOLERANCE,
+    UNEVEN,
     UNIT,
     VERTICES,
     WALLS,
 )
 from gapath.kernels.memetic.mutations import INSERT, propose, replace
-from gapath.kernels.memetic.polygon import fields_of, is_crowded, length_of
+from gapath.kernels.memetic.polygon import cornered, fields_of, is_crowded, length_of
 from gapath.kernels.memetic.population import (
     Diary,
     Individuals,
@@ -54,8 +54,36 @@ from gapath.kernels.memetic.population import (
 from gapath.kernels.memetic.rays import ray
 from gapath.kernels.memetic.rerouting import Room, crossed, reroute, walked_path
 from gapath.kernels.memetic.shortening import FIXED, SHORTENING, cut_loops, running_cost, shortened
-from gapath.kernels.memetic.steps import X_BITS, X_MASK
+from gapath.kernels.memetic.steps import STEP_X, STEP_Y, X_BITS, X_MASK, is_free
+from gapath.kernels.memetic.walls import GIVEN_UP
 from gapath.kernels.rng import Stream, fill, happens, high, low
+
+EARLY, FOREVER = 8, 1 << 40
+"""Steps along walls for each row and column after which to look whether corridors are narrow."""
+
+SAMPLES = 16
+"""Rows, and columns, of fields that are looked at for that."""
+
+
+@kernel
+def is_narrow(table: NDArray[np.int32]) -> bool:
+    """Tell whether most free fields, of some all over the map, have at most three free neighbours.
+
+    There a search sees about as many fields as hands do, and is the faster.
+    """
+    rows, cols = table.shape
+    free, narrow = 0, 0
+    for i in range(SAMPLES * SAMPLES):
+        y, x = (2 * (i // SAMPLES) + 1) * rows // (2 * SAMPLES), (i % SAMPLES) * cols // SAMPLES
+        x = (x + i // SAMPLES) % cols  # not all in one column of what repeats itself
+        if not is_free(table, x, y):
+            continue
+        around = 0
+        for k in range(8):
+            around += is_free(table, x + STEP_X[k], y + STEP_Y[k])
+        free += 1
+        narrow += around <= 3
+    return 2 * narrow > free
 
 
 @kernel
@@ -127,18 +155,32 @@ def evolve(
         count, walked, path = known.shape[0], np.int64(0), known.copy()
     else:
         path = np.empty(256, dtype=np.uint32)
-        count, walked, path = walked_path(
-            table, start_x, start_y, target_x, target_y, rule, hands,
-            np.int64(1) << 40, False, False, path, stream,
-        )  # fmt: skip
+        budget = np.int64(EARLY * (rows + cols) if settings[ASK] else FOREVER)
+        for _ in range(2):
+            count, walked, path = walked_path(
+                table, start_x, start_y, target_x, target_y, rule, hands,
+                budget, False, False, path, stream,
+            )  # fmt: skip
+            if count != GIVEN_UP or is_narrow(table):
+                break
+            budget = np.int64(FOREVER)
     numbers[STATUS] = count
+    if count == GIVEN_UP:
+        numbers[STATUS] = CROWDED
     if count < 0:
         return numbers, np.empty((0, 2), dtype=np.int32)
-    if settings[ASK] and is_rough(table, path, count):
-        numbers[STATUS], shares[WALLS] = ROUGH, running_cost(table, path, count)[count - 1]
-        return numbers, np.empty((0, 2), dtype=np.int32)
     fields = walked + SHORTENING * count
-    size, total, points, costs = shortened(table, path, count, rule, content, True, order, shares)
+    cost = running_cost(table, path, count)[count - 1]
+    shares[WALLS] = cost
+    if settings[ASK] and cost > least * (count - 2) + table[target_y, target_x]:
+        numbers[STATUS] = UNEVEN
+        return numbers, np.empty((0, 2), dtype=np.int32)
+    if known.shape[0] and settings[EFFORT] == 0:
+        size, total, points, costs = cornered(table, path, count)
+    else:
+        size, total, points, costs = shortened(
+            table, path, count, rule, content, True, order, shares
+        )
     # The more a path winds, the less may be gained by another one as long.
     apart = max(abs(target_x - start_x), abs(target_y - start_y))
     budget = fields * settings[EFFORT] // UNIT * apart // max(length_of(points, size), 1)
@@ -269,18 +311,6 @@ def evolve(
             shares[LOOPS] += gain
         room = Room(order, path, room.other, room.child)
     return finished(table, rule, members, best, epoch, evaluations, diary, numbers, room.path)
-
-
-@kernel
-def is_rough(table: NDArray[np.int32], path: NDArray[np.uint32], count: int) -> bool:
-    """Tell whether the weight changes at more than every fourth step of a path."""
-    changes = 0
-    before = np.int64(table[path[0] >> X_BITS, path[0] & X_MASK])
-    for i in range(1, count):
-        weight = np.int64(table[path[i] >> X_BITS, path[i] & X_MASK])
-        changes += weight != before
-        before = weight
-    return 4 * changes > count
 
 
 @kernel
