@@ -62,10 +62,9 @@ def test_a_straight_way_is_proved_optimal(rule):
 
 
 def blocks(number, rows=60, cols=90):
-    """Even ground with blocks on it, and a heavy field on one side."""
+    """Even ground with blocks on it."""
     random = np.random.default_rng(number)
     weights = np.full((rows, cols), 0.5)
-    weights[: rows // 2, cols // 3 : cols // 2] = 0.75
     for _ in range(rows * cols // 150):
         x, y = random.integers(0, (cols - 4, rows - 4))
         weights[y : y + random.integers(2, 9), x : x + random.integers(2, 9)] = 1.0
