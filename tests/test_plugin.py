@@ -92,7 +92,9 @@ def test_its_population_is_logged_recorded_reproduced_and_reported(site, tmp_pat
     assert int(re.search(r"/memetic_run +(\d)", told)[1]) > 5 and "/ga_run" not in told
     assert "reproduced" in succeed(site, tmp_path, "gapath-log", "verify", folder)
     shares = f"import gapath; print(gapath.run('{folder}').trial(1).shares())"
-    assert "{'first bend': " in succeed(site, tmp_path, "python", "-c", shares)
+    there = os.environ | {"PYTHONPATH": str(site)}
+    told = subprocess.check_output([sys.executable, "-c", shares], env=there, text=True)
+    assert "{'first bend': " in told
     succeed(site, tmp_path, "gapath-log", "rerun", folder, "--trials", "0,1", "-o", "again")
     assert len(list((tmp_path / "again").iterdir())) == 2
     cut = tmp_path / "run.mcap.part"

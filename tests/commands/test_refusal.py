@@ -8,7 +8,7 @@ import pytest
 
 MAPS = r"one of \d+ names, see gapath --help"
 ROOT = "choice, corner_cutting, drive, experiment, force, kernels, map, name, navigator, output, "
-ROOT += "planner, recorder, seed, task, threads, trials"
+ROOT += "planner, recorder, scenario, seed, task, threads, trials"
 
 CASES = {
     # A name that there is not.
@@ -19,8 +19,8 @@ CASES = {
     "recorder=[mcap,reruns]": "recorder: got reruns, expected one of mcap, none, rerun; did you "
     r"mean rerun\?",
     "experiment=tabl1": r"experiment: got tabl1, expected one of .*, table1; did you mean table1\?",
-    "task=drvie": r"task: got drvie, expected one of drive, plan; did you mean drive\?",
-    "task=": "task: got '', expected one of drive, plan",
+    "task=drvie": r"task: got drvie, expected one of drive, plan, scenario; did you mean drive\?",
+    "task=": "task: got '', expected one of drive, plan, scenario",
     "corner_cutting=forbidd": r"corner_cutting: got forbidd, expected one of .*mean forbid\?",
     "planner.kind=grid_serch": r"planner\.kind: got grid_serch, .*; did you mean grid_search\?",
     "task=drive navigator.explore.base=ga33": rf"navigator.explore.base: got ga33, "
@@ -29,7 +29,8 @@ CASES = {
     "planner.populaton=3": r"planner\.populaton: got an unknown name, expected one of kind, "
     r"population, .*; did you mean population\?",
     "map=file map.pth=a.map": r"map\.pth: got an unknown name, expected one of .* mean path\?",
-    "+foo=1": "foo: got an unknown name, expected one of task, .*, drive, navigator, planner",
+    "+foo=1": "foo: got an unknown name, expected one of task, .*, drive, navigator, planner, "
+    "scenario",
     "plannr=ga1": rf"plannr: got an unknown name, expected one of {ROOT}; did you mean planner\?",
     "experimnt=table1": rf"experimnt: got an unknown name, .* {ROOT}; did you mean experiment\?",
     "~foo": f"foo: got an unknown name, expected one of {ROOT}",
@@ -64,7 +65,7 @@ CASES = {
     "task=plan navigator=kg18": "navigator: got kg18 with task=plan, expected task=drive, to which "
     "the group navigator belongs",
     "task=drive planner.population=3": r"planner\.population: got 3 with task=drive, expected "
-    "task=plan, to which the group planner belongs",
+    "task=plan or task=scenario, to which the group planner belongs",
     # Jobs of one sweep that are one run.
     "-m threads=1,2": "sweep: got threads=1 and threads=2, which are one run, expected jobs that "
     "differ in more than output, force, threads, kernels",

@@ -91,6 +91,7 @@ int32[] edges             # i, j, i, j, ...: points that a free line joins
 uint8 FOUND=0
 uint8 NOT_FOUND=1
 uint8 INFEASIBLE=2
+uint8 OPTIMAL=3
 uint64 trial
 uint64 epochs
 uint64 evaluations        # chromosomes whose fitness was computed
@@ -100,7 +101,7 @@ float64 weights           # sum of the weights of the best path's other fields
 float64 vln               # what an obstacle field counts in cost
 float64 cost              # for people: obstacles * vln + weights
 uint8 status
-bool feasible             # status is FOUND
+bool feasible             # status is FOUND or OPTIMAL
 int32[] path              # x, y, x, y, ... [fields]; empty without a path
 """,
     "gapath_msgs/msg/DriveStart": """\
@@ -128,6 +129,7 @@ int32[] entries           # their weights in units of 1 / {SCALE}; {OBSTACLE}: a
 uint8 FOUND=0
 uint8 NOT_FOUND=1
 uint8 INFEASIBLE=2
+uint8 OPTIMAL=3
 uint64 trial
 uint64 epochs
 uint64 evaluations        # chromosomes whose fitness was computed
