@@ -172,9 +172,10 @@ def _fault_of_value(
             where = ".".join([*done, step])
             group = done[0] if len(done) == 1 else ""
             if group in OFFERS and (others := with_setting(group, step)):
-                return InputError(
-                    where, f"an unknown name with this {group}", f"{others}, which has it"
-                )
+                right = f"{others}, which has it"
+                if sweep:  # Hydra holds it against the group's default before it looks at jobs
+                    right += f"; in a sweep over several of these, ++{word}"
+                return InputError(where, f"an unknown name with this {group}", right)
             return InputError(where, "an unknown name", one_of(step, names))
         done.append(step)
         place = place._get_node(step)

@@ -29,6 +29,8 @@ CASES = {
     "planner.populaton=3": r"planner\.populaton: got an unknown name, expected one of kind, "
     r"population, .*; did you mean population\?",
     "map=file map.pth=a.map": r"map\.pth: got an unknown name, expected one of .* mean path\?",
+    "-m map=field_rooms,field_maze map.width=90": r"map\.width: got an unknown name with this map, "
+    r"expected map=field_clutter or .*, which has it; .* over several of these, \+\+map\.width=90",
     "+foo=1": "foo: got an unknown name, expected one of task, .*, drive, navigator, planner, "
     "scenario",
     "plannr=ga1": rf"plannr: got an unknown name, expected one of {ROOT}; did you mean planner\?",
