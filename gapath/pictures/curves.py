@@ -19,7 +19,8 @@ def draw_convergence(axes: Axes, best: NDArray[np.float64], mean: NDArray[np.flo
     point = "o" if len(epochs) == 1 else ""
     axes.plot(epochs, best, color="#0072B2", marker=point, zorder=3, label="best")
     axes.plot(epochs, mean, "--", color="#D55E00", marker=point, linewidth=1, label="mean")
-    if min(best.min(), mean.min()) > 0:
+    least = min(best.min(), mean.min())
+    if 0 < 10 * least < max(best.max(), mean.max()):  # free paths cost about the same
         axes.set_yscale("log")
     axes.set(xlabel="epoch", ylabel="fitness (less is better)")
     axes.legend(frameon=False)
