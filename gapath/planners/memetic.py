@@ -132,16 +132,20 @@ class Planner:
         if told[STATUS] in (UNEVEN, CROWDED):
             large = told[STATUS] == UNEVEN and table.size > LARGE
             searched = coarse_path(problem) if large else shortest_path(problem)
+            if searched.status is PlanStatus.INFEASIBLE:
+                return searched
             expansions, proved = searched.expansions, not large
-            known = (searched.path[:, 1].astype(np.uint32) << X_BITS) | searched.path[:, 0]
+            walls = int(told[SHARES])
+            found = searched.path.astype(np.uint32)
+            known: NDArray[np.uint32] = np.bitwise_or(found[:, 1] << X_BITS, found[:, 0])
+            if large and searched.cost * SCALE >= walls + table[y, x]:  # or it found nothing
+                known = _UNKNOWN
             settings = settings.copy()
             settings[ASK] = 0
             if proved:  # it cannot become cheaper
                 settings[EFFORT] = 0
-            walls = told[SHARES]
-            told, path = evolve(
-                table, *ends, int(rule), least, settings, known.astype(np.uint32), stream
-            )
+            told, path = evolve(table, *ends, int(rule), least, settings, known, stream)
+            walls = max(walls, int(told[SHARES]))  # nothing, where hands gave up
             told[SHARES + SEARCH] = walls - told[SHARES]
             told[SHARES] = walls
         status, best, lower, start, _, epochs, evaluations = told[:CHANGES].tolist()

@@ -17,9 +17,10 @@ from gapath.discovery import yaml_values
 from gapath.errors import InputError
 from gapath.grid import GridMap
 from gapath.kernels.rng import stream
+from gapath.planners import memetic
 from gapath.planning.flaw import flaw
 from gapath.planning.shortest_path import shortest_path
-from gapath.problem import CornerCutting, PlanStatus, Problem
+from gapath.problem import CornerCutting, Plan, PlanStatus, Problem
 
 NAMES = ["memetic_quick", "memetic_quality"]
 
@@ -149,3 +150,40 @@ def test_plans_are_the_same_without_the_compiler():
     plans = json.loads(json.dumps(small()))
     assert json.loads(there.stdout) == plans
     assert max(plan[2] for plan in plans) > 50
+
+
+def comb(rows=99, cols=99):
+    """One corridor of a field that goes there and back: hands give up, and A* is asked."""
+    weights = np.full((rows, cols), 0.5)
+    weights[:-1, 1::4] = weights[1:, 3::4] = 1.0
+    return weights
+
+
+def test_shares_are_at_one_with_the_path_where_hands_gave_up():
+    problem = Problem(GridMap("comb", comb()), (0, 0), (98, 50), CornerCutting.FORBID)
+    plan = make().plan(problem, stream(1))
+    shares = list(plan.shares().values())
+    assert plan.status is PlanStatus.OPTIMAL and plan.expansions > 0
+    assert plan.cost == shortest_path(problem).cost == shares[0] - sum(shares[1:])
+    assert min(shares) >= 0
+
+
+def test_no_way_is_proved_where_hands_gave_up():
+    weights = comb()
+    weights[60, 97:] = weights[62, 97:] = weights[60:63, 97] = 1.0
+    problem = Problem(GridMap("comb", weights), (0, 0), (98, 61), CornerCutting.FORBID)
+    assert make().plan(problem, stream(1)).status is PlanStatus.INFEASIBLE
+
+
+def test_a_coarse_path_that_is_dearer_than_the_walls_is_not_taken(monkeypatch):
+    weights = np.full((40, 60), 0.5)
+    weights[10:30, 20:40] = 0.75
+    problem = Problem(GridMap("dear", weights), (0, 20), (59, 20))
+    dear = [(x, 20) for x in range(20)] + [(20, 20 - i % 2) for i in range(200)]
+    dear += [(x, 20) for x in range(21, 60)]
+    path = np.array(dear, dtype=np.int32)
+    cost = float(weights[path[:, 1], path[:, 0]].sum())
+    monkeypatch.setattr(memetic, "LARGE", 100)
+    monkeypatch.setattr(memetic, "coarse_path", lambda _: Plan(PlanStatus.FOUND, path, cost))
+    plan = make().plan(problem, stream(1))
+    assert plan.cost < cost and min(plan.shares().values()) >= 0
