@@ -153,7 +153,7 @@ def repaired(
         u, v = np.int64(path[behind, 0]), np.int64(path[behind, 1])
     stream = np.zeros(4, dtype=np.uint64)  # nothing is drawn from it
     way = np.empty(n + 256, dtype=np.uint32)
-    count, _, way = walked_path(table, x, y, u, v, rule, BOTH, NO_LIMIT, False, True, way, stream)
+    count, _, way = walked_path(table, (x, y, u, v), rule, BOTH, NO_LIMIT, False, True, way, stream)
     if count == NO_WAY:  # nor to the target, to which the path is free from there
         return np.empty((0, 2), dtype=np.int32), 0
     way = grown(way, count, count + n - behind)
@@ -167,7 +167,7 @@ def repaired(
     if cost - enough >= lower:
         new = np.empty(256, dtype=np.uint32)
         more, _, new = walked_path(
-            table, x, y, end_x, end_y, rule, BOTH, NO_LIMIT, False, False, new, stream
+            table, (x, y, end_x, end_y), rule, BOTH, NO_LIMIT, False, False, new, stream
         )
         more, _, new = straightened(table, new, more, rule, False, order)
         child = np.empty(count + more, dtype=np.uint32)

@@ -17,11 +17,14 @@ from gapath.history.evolution import Evolution, Population
 from gapath.kernels.memetic import account
 from gapath.kernels.memetic.account import (
     ASK,
+    BEST,
     CHANGES,
     CROWDED,
     EFFORT,
     EPOCHS,
+    EVALUATIONS,
     INDIVIDUAL,
+    LOWER,
     NUMBERS,
     SEARCH,
     SHARES,
@@ -148,17 +151,18 @@ class Planner:
             walls = max(walls, int(told[SHARES]))  # nothing, where hands gave up
             told[SHARES + SEARCH] = walls - told[SHARES]
             told[SHARES] = walls
-        status, best, lower, start, _, epochs, evaluations = told[:CHANGES].tolist()
-        if status < 0:
+        numbers: list[int] = told[:CHANGES].tolist()
+        if numbers[STATUS] < 0:
             return Plan(PlanStatus.INFEASIBLE)
+        best = numbers[BEST]
         # a robot's table changes; only where no diagonal step is allowed it is asked again
         result = _Result(told, table.copy() if rule is _STRAIGHT else None)
         return Plan(
-            PlanStatus.OPTIMAL if best <= lower or proved else PlanStatus.FOUND,
+            PlanStatus.OPTIMAL if best <= numbers[LOWER] or proved else PlanStatus.FOUND,
             path,
-            (best + start) / SCALE,
-            epochs=epochs,
-            evaluations=evaluations,
+            (best + numbers[START]) / SCALE,
+            epochs=numbers[EPOCHS],
+            evaluations=numbers[EVALUATIONS],
             expansions=expansions,
             trace=result.evolution,
             lines=result.lines,

@@ -12,13 +12,15 @@ WALLS, LOOPS, ASIDE, PULLING, SEARCH, NEWCOMER, CROSSOVER, REROUTE, VERTICES = r
 OPERATORS = VERTICES + 4
 """How many there are."""
 
-STATUS, BEST, LOWER, START, INDIVIDUAL, EPOCHS, EVALUATIONS, CHANGES, POINTS, SHARES = range(10)
+(STATUS, BEST, LOWER, START, INDIVIDUAL, MEMBERS, EPOCHS, EVALUATIONS, READ, CHANGES, POINTS,
+ SHARES) = range(12)  # fmt: skip
 NUMBERS = SHARES + OPERATORS
 """What comes out besides: the fields of the first path, or what it is instead
 (`gapath.kernels.memetic.walls.NO_WAY`); the sum of the best path's weights, its start left out;
-what no path can undercut; the start's weight; which individual is best; epochs; how many
-newcomers, crossovers and mutations were tried; what the diary holds; and how much each operator
-lowered the cost of the best individual, of WALLS what the first path costs."""
+what no path can undercut; the start's weight; which individual is best, and of how many; epochs;
+how many newcomers, crossovers and mutations were tried, and the fields that they read; what the
+diary holds; and how much each operator lowered the cost of the best individual, of WALLS what the
+first path costs."""
 
 UNEVEN, CROWDED = -3, -4
 """STATUS where nothing but a first path was made, since others say more than walls do: UNEVEN where

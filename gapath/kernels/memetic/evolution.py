@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 from gapath.kernels.jit import kernel
 from gapath.kernels.memetic.account import (
     ASK,
-    BEST,
-    CHANGES,
     CROSSOVER,
     CROSSOVER_THRESHOLD,
     CROWDED,
@@ -24,10 +22,10 @@ from gapath.kernels.memetic.account import (
     INDIVIDUAL,
     LOOPS,
     LOWER,
-    NEWCOMER,
+    MEMBERS,
     NUMBERS,
-    POINTS,
     POPULATION,
+    READ,
     REROUTE,
     REROUTE_THRESHOLD,
     SHARES,
@@ -44,46 +42,17 @@ from gapath.kernels.memetic.polygon import cornered, fields_of, is_crowded, leng
 from gapath.kernels.memetic.population import (
     Diary,
     Individuals,
+    finished,
     individuals,
     noted,
     opened,
     put,
-    same_side,
     with_room,
 )
 from gapath.kernels.memetic.rays import ray
-from gapath.kernels.memetic.rerouting import Room, crossed, reroute, walked_path
+from gapath.kernels.memetic.rerouting import Room, crossed, first_walk, newcomers, reroute
 from gapath.kernels.memetic.shortening import FIXED, SHORTENING, cut_loops, running_cost, shortened
-from gapath.kernels.memetic.steps import STEP_X, STEP_Y, X_BITS, X_MASK, is_free
-from gapath.kernels.memetic.walls import GIVEN_UP
 from gapath.kernels.rng import Stream, fill, happens, high, low
-
-EARLY, FOREVER = 8, 1 << 40
-"""Steps along walls for each row and column after which to look whether corridors are narrow."""
-
-SAMPLES = 16
-"""Rows, and columns, of fields that are looked at for that."""
-
-
-@kernel
-def is_narrow(table: NDArray[np.int32]) -> bool:
-    """Tell whether most free fields, of some all over the map, have at most three free neighbours.
-
-    There a search sees about as many fields as hands do, and is the faster.
-    """
-    rows, cols = table.shape
-    free, narrow = 0, 0
-    for i in range(SAMPLES * SAMPLES):
-        y, x = (2 * (i // SAMPLES) + 1) * rows // (2 * SAMPLES), (i % SAMPLES) * cols // SAMPLES
-        x = (x + i // SAMPLES) % cols  # not all in one column of what repeats itself
-        if not is_free(table, x, y):
-            continue
-        around = 0
-        for k in range(8):
-            around += is_free(table, x + STEP_X[k], y + STEP_Y[k])
-        free += 1
-        narrow += around <= 3
-    return 2 * narrow > free
 
 
 @kernel
@@ -126,218 +95,233 @@ def evolve(
     path : (m, 2) int32
         Fields (x, y) of the best path; none without one.
     """
-    rows, cols = table.shape
-    hands = settings[HANDS]
-    none = np.empty(0, dtype=np.int64)
+    ends = (np.int64(start_x), np.int64(start_y), np.int64(target_x), np.int64(target_y))
     numbers = np.zeros(NUMBERS, dtype=np.int64)
-    shares = numbers[SHARES:]
-    words = np.empty(5, dtype=np.uint64)
-    lower = np.int64(table[target_y, target_x])
-    if start_x == target_x and start_y == target_y:
-        lower = np.int64(0)
-    else:
-        lower += least * (max(abs(target_x - start_x), abs(target_y - start_y)) - 1)
-    content = lower
+    nothing = np.empty((0, 2), dtype=np.int32)
+    apart = max(abs(target_x - start_x), abs(target_y - start_y))
+    if apart > 0:
+        numbers[LOWER] = least * (apart - 1) + table[target_y, target_x]
+    numbers[START] = table[start_y, start_x]
+    numbers[MEMBERS] = numbers[EPOCHS] = numbers[EVALUATIONS] = 1
+    content = numbers[LOWER]
     if settings[TOLERANCE] > 0:  # of a field less nobody should wait
-        content += max(lower * settings[TOLERANCE] // UNIT, np.int64(least))
-    numbers[LOWER], numbers[START] = lower, table[start_y, start_x]
+        content += max(content * settings[TOLERANCE] // UNIT, np.int64(least))
     blocked, straight = ray(table, start_x, start_y, target_x, target_y, rule)
     if blocked == 0 and straight <= content:
-        members = individuals(1, 2)
-        members.points[0, 0, 0], members.points[0, 0, 1] = start_x, start_y
-        members.points[0, 1, 0], members.points[0, 1, 1] = target_x, target_y
-        members.sizes[0], members.totals[0] = 2, straight
-        numbers[STATUS], shares[WALLS] = 2, straight
+        numbers[STATUS], numbers[SHARES + WALLS] = 2, straight
+        line = np.array([[start_x, start_y], [target_x, target_y]], dtype=np.int32)
+        cost = np.array([straight], dtype=np.int64)
+        members = put(individuals(1, 2), 0, line, cost, 2, straight)
         diary = noted(opened(2), members, 1, 0, WALLS, 0)
-        return finished(table, rule, members, 0, 1, 1, diary, numbers, np.empty(0, dtype=np.uint32))
-    order = np.empty(table.size, dtype=np.int32)
-    if known.shape[0]:
+        return finished(table, rule, members, diary, numbers, np.empty(0, dtype=np.uint32))
+
+    searched = known.shape[0] > 0
+    if searched:
         count, walked, path = known.shape[0], np.int64(0), known.copy()
     else:
-        path = np.empty(256, dtype=np.uint32)
-        budget = np.int64(EARLY * (rows + cols) if settings[ASK] else FOREVER)
-        for _ in range(2):
-            count, walked, path = walked_path(
-                table, start_x, start_y, target_x, target_y, rule, hands,
-                budget, False, False, path, stream,
-            )  # fmt: skip
-            if count != GIVEN_UP or is_narrow(table):
-                break
-            budget = np.int64(FOREVER)
+        count, walked, path = first_walk(table, ends, rule, settings, stream)
     numbers[STATUS] = count
-    if count == GIVEN_UP:
-        numbers[STATUS] = CROWDED
     if count < 0:
-        return numbers, np.empty((0, 2), dtype=np.int32)
-    fields = walked + SHORTENING * count
+        return numbers, nothing
     cost = running_cost(table, path, count)[count - 1]
-    shares[WALLS] = cost
+    numbers[SHARES + WALLS] = cost
     if settings[ASK] and cost > least * (count - 2) + table[target_y, target_x]:
         numbers[STATUS] = UNEVEN
-        return numbers, np.empty((0, 2), dtype=np.int32)
-    if known.shape[0] and settings[EFFORT] == 0:
+        return numbers, nothing
+    order = np.empty(table.size, dtype=np.int32)
+    if searched and settings[EFFORT] == 0:
         size, total, points, costs = cornered(table, path, count)
     else:
         size, total, points, costs = shortened(
-            table, path, count, rule, content, True, order, shares
+            table, path, count, rule, content, True, order, numbers[SHARES:]
         )
-    # The more a path winds, the less may be gained by another one as long.
-    apart = max(abs(target_x - start_x), abs(target_y - start_y))
-    budget = fields * settings[EFFORT] // UNIT * apart // max(length_of(points, size), 1)
-    population = settings[POPULATION]
-    if total <= content or known.shape[0]:
-        population = 1  # walls lead nobody to the like of a path that was searched
     if settings[ASK] and total > content and is_crowded(points, size):
         numbers[STATUS] = CROWDED
-        return numbers, np.empty((0, 2), dtype=np.int32)
+        return numbers, nothing
+
+    # Walls lead nobody to the like of a path that was searched.
+    population = settings[POPULATION] if total > content and not searched else 1
     members = put(individuals(population, size), 0, points, costs, size, total)
     diary = noted(opened(size), members, 1, 0, WALLS, 0)
-    n, best, epoch, evaluations = 1, 0, 1, 1
-    spent = np.int64(0)
-    if total <= content or budget == 0:
-        return finished(table, rule, members, best, epoch, evaluations, diary, numbers, path)
+    # The more a path winds, the less may be gained by another one as long.
+    budget = (walked + SHORTENING * count) * settings[EFFORT] // UNIT
+    budget = budget * apart // max(length_of(points, size), 1)
+    room = Room(order, path, np.empty(0, dtype=np.uint32), np.empty(0, dtype=np.uint32))
+    if total > content and budget > 0:
+        members, diary, room = newcomers(
+            table, ends, rule, settings, content, budget, members, diary, numbers, room, stream
+        )
+        members, diary, room = generations(
+            table, rule, least, settings, content, budget, members, diary, numbers, room, stream
+        )
+    return finished(table, rule, members, diary, numbers, room.path)
 
-    room = Room(order, path, np.empty(256, dtype=np.uint32), np.empty(512, dtype=np.uint32))
-    for k in range(1, 2 * members.sizes.shape[0]):
-        if (
-            n == members.sizes.shape[0]
-            or members.totals[best] <= content
-            or spent + FIXED >= budget
-        ):
-            break
-        count, walked, path = walked_path(
-            table, start_x, start_y, target_x, target_y, rule, hands,
-            budget - spent, k > 1, k & 1 == 1, room.path, stream,
-        )  # fmt: skip
-        evaluations += 1
-        room = Room(order, path, room.other, room.child)
-        spent += FIXED + walked + SHORTENING * max(count, 0)
-        if count < 0:
-            continue
-        size, total, points, costs = shortened(table, path, count, rule, content, True, order, none)
-        row = n
-        for other in range(n):
-            if same_side(table, members.points[other], members.sizes[other], points, size, rule):
-                row = other
-                break
-        if row < n and total >= members.totals[row]:
-            continue
-        before = members.totals[best]
-        members = put(members, row, points, costs, size, total)
-        diary = noted(diary, members, 1, row, NEWCOMER, 0)
-        n = max(n, row + 1)
-        if total < before:
-            best = row
-            shares[NEWCOMER] += before - total
 
-    pairs = n * (n - 1) // 2  # each is crossed once before chance decides
-    if settings[CROSSOVER_THRESHOLD] == 0:
-        pairs = 0
-    first, bent_once = evaluations, False
-    while spent < budget and members.totals[best] > content:
-        tried = evaluations - first
-        epoch = 2 + tried // n
+@kernel
+def generations(
+    table: NDArray[np.int32],
+    rule: int,
+    least: int,
+    settings: NDArray[np.int64],
+    content: int,
+    budget: int,
+    members: Individuals,
+    diary: Diary,
+    numbers: NDArray[np.int64],
+    room: Room,
+    stream: Stream,
+) -> tuple[Individuals, Diary, Room]:
+    """Cross and mutate, an evaluation an individual in each epoch.
+
+    What is taken and given is that of `newcomers`.
+    """
+    n = numbers[MEMBERS]
+    pairs = n * (n - 1) // 2 if settings[CROSSOVER_THRESHOLD] else 0
+    first, bent = numbers[EVALUATIONS], False
+    words = np.empty(5, dtype=np.uint64)
+    while numbers[READ] < budget and members.totals[numbers[INDIVIDUAL]] > content:
+        before = members.totals[numbers[INDIVIDUAL]]
+        tried = numbers[EVALUATIONS] - first
+        numbers[EPOCHS] = 2 + tried // n
         fill(stream, words)
-        before = members.totals[best]
-        if tried < pairs or (n > 1 and happens(words[0], np.uint64(settings[CROSSOVER_THRESHOLD]))):
+        # Each pair is crossed once before chance decides.
+        crossing = happens(words[0], np.uint64(settings[CROSSOVER_THRESHOLD]))
+        if tried < pairs or (n > 1 and crossing):
+            row, other = pair(tried, n) if tried < pairs else drawn_pair(words, n)
             operator = CROSSOVER
-            row = high(words[1], n)
-            other = high(words[2], n - 1)
-            other += other >= row
-            if tried < pairs:
-                row, other = 0, tried + 1
-                while other >= n:
-                    row += 1
-                    other += row + 1 - n
-            if members.totals[other] < members.totals[row]:
-                row, other = other, row
-            count, cost, fields, room = crossed(
-                table, members.points[row], members.sizes[row],
-                members.points[other], members.sizes[other], rule, room,
-            )  # fmt: skip
-            gain = members.totals[row] - cost
-            if gain > 0:
-                size, total, points, costs = shortened(
-                    table, room.child, count, rule, lower, False, room.order, none
-                )
-                gain = members.totals[row] - total
-                members = put(members, row, points, costs, size, total)
+            row, gain, fields, members, room = crossover(
+                table, row, other, rule, numbers[LOWER], members, room
+            )
         else:
             row, other = high(words[1], n), low(words[1], n)
             if members.totals[other] < members.totals[row]:
                 row = other
-            size = members.sizes[row]
-            # What pays the least weight everywhere can only become cheaper elsewhere.
-            bent = members.totals[row] > least * length_of(members.points[row], size)
-            reroutes = np.uint64(settings[REROUTE_THRESHOLD])
-            if size > 2 and reroutes and (not bent or happens(words[0], reroutes)):
-                operator = REROUTE
-                gain, fields, members, room = reroute(
-                    table, members, row, least, rule, hands, words[2:], room, stream
-                )
-            else:
-                kind = low(words[0], 4) if size > 2 else INSERT
-                operator = VERTICES + kind
-                members = with_room(members, size + 2)
-                new = np.empty((2, 2), dtype=np.int32)
-                i, j, count = propose(kind, members.points[row], size, rows, cols, words[1:], new)
-                length = length_of(members.points[row, i : j + 1], j + 1 - i)
-                gain, members.sizes[row] = replace(
-                    table, members.points[row], members.costs[row], size, i, j, new, count, rule
-                )
-                members.totals[row] -= max(gain, 0)
-                bent_once |= gain > 0
-                fields = length
-        spent += FIXED + fields
-        evaluations += 1
-        if gain > 0 or (gain == 0 and operator >= VERTICES):  # as cheap, with fewer vertices
-            diary = noted(diary, members, epoch, row, operator, gain)
-        if members.totals[row] < before:
-            shares[operator] += before - members.totals[row]
-            best = row
-
-    if bent_once:  # vertices that moved may leave a spur, which the path goes there and back
-        count, path = fields_of(
-            table, members.points[best], members.sizes[best], False, rule, room.path
-        )
-        short = cut_loops(table, path, count, order, rule)
-        if short < count:
-            size, total, points, costs = shortened(
-                table, path, short, rule, lower, False, order, none
+            operator, gain, fields, members, room = mutation(
+                table, row, rule, least, settings, words, members, room, stream
             )
-            gain = members.totals[best] - total
-            members = put(members, best, points, costs, size, total)
-            diary = noted(diary, members, epoch, best, LOOPS, gain)
-            shares[LOOPS] += gain
-        room = Room(order, path, room.other, room.child)
-    return finished(table, rule, members, best, epoch, evaluations, diary, numbers, room.path)
+        numbers[READ] += FIXED + fields
+        numbers[EVALUATIONS] += 1
+        if gain > 0 or (gain == 0 and operator >= VERTICES):  # as cheap, with fewer vertices
+            diary = noted(diary, members, numbers[EPOCHS], row, operator, gain)
+        bent |= gain > 0 and operator >= VERTICES
+        if members.totals[row] < before:
+            numbers[SHARES + operator] += before - members.totals[row]
+            numbers[INDIVIDUAL] = row
+    if bent:
+        return unlooped(table, rule, members, diary, numbers, room)
+    return members, diary, room
 
 
 @kernel
-def finished(
+def pair(k: int, n: int) -> tuple[int, int]:
+    """Give the k-th pair of n individuals: (0, 1), (0, 2), ..., (1, 2), ..."""
+    row, other = 0, k + 1
+    while other >= n:
+        row += 1
+        other += row + 1 - n
+    return row, other
+
+
+@kernel
+def drawn_pair(words: NDArray[np.uint64], n: int) -> tuple[int, int]:
+    """Draw two of n individuals."""
+    row = high(words[1], n)
+    other = high(words[2], n - 1)
+    return row, other + int(other >= row)
+
+
+@kernel
+def crossover(
+    table: NDArray[np.int32],
+    row: int,
+    other: int,
+    rule: int,
+    lower: int,
+    members: Individuals,
+    room: Room,
+) -> tuple[int, int, int, Individuals, Room]:
+    """Cross two individuals; the child takes the dearer one's place if it is cheaper.
+
+    Gives which that is, what it became cheaper by, the fields that were read, population and room.
+    """
+    if members.totals[other] < members.totals[row]:
+        row, other = other, row
+    count, cost, fields, room = crossed(
+        table, members.points[row], members.sizes[row],
+        members.points[other], members.sizes[other], rule, room,
+    )  # fmt: skip
+    gain = members.totals[row] - cost
+    if gain > 0:
+        none = np.empty(0, dtype=np.int64)
+        size, total, points, costs = shortened(
+            table, room.child, count, rule, lower, False, room.order, none
+        )
+        gain = members.totals[row] - total
+        members = put(members, row, points, costs, size, total)
+    return row, gain, fields, members, room
+
+
+@kernel
+def mutation(
+    table: NDArray[np.int32],
+    row: int,
+    rule: int,
+    least: int,
+    settings: NDArray[np.int64],
+    words: NDArray[np.uint64],
+    members: Individuals,
+    room: Room,
+    stream: Stream,
+) -> tuple[int, int, int, Individuals, Room]:
+    """Mutate an individual: reroute it past some vertices, or change a vertex.
+
+    Gives the operator, what the individual became cheaper by (-1 if it stays as it was), the fields
+    that were read, population and room.
+    """
+    rows, cols = table.shape
+    size = members.sizes[row]
+    # What pays the least weight everywhere can only become cheaper elsewhere.
+    bent = members.totals[row] > least * length_of(members.points[row], size)
+    reroutes = np.uint64(settings[REROUTE_THRESHOLD])
+    if size > 2 and reroutes and (not bent or happens(words[0], reroutes)):
+        gain, fields, members, room = reroute(
+            table, members, row, least, rule, settings[HANDS], words[2:], room, stream
+        )
+        return REROUTE, gain, fields, members, room
+    kind = low(words[0], 4) if size > 2 else INSERT
+    members = with_room(members, size + 2)
+    new = np.empty((2, 2), dtype=np.int32)
+    i, j, count = propose(kind, members.points[row], size, rows, cols, words[1:], new)
+    fields = length_of(members.points[row, i : j + 1], j + 1 - i)
+    gain, members.sizes[row] = replace(
+        table, members.points[row], members.costs[row], size, i, j, new, count, rule
+    )
+    members.totals[row] -= max(gain, 0)
+    return VERTICES + kind, gain, fields, members, room
+
+
+@kernel
+def unlooped(
     table: NDArray[np.int32],
     rule: int,
     members: Individuals,
-    best: int,
-    epoch: int,
-    evaluations: int,
     diary: Diary,
     numbers: NDArray[np.int64],
-    path: NDArray[np.uint32],
-) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
-    """Give what `evolve` does, of the best individual; ``path`` is room for its fields."""
-    numbers[BEST], numbers[INDIVIDUAL] = members.totals[best], best
-    numbers[EPOCHS], numbers[EVALUATIONS] = epoch, evaluations
-    numbers[CHANGES], numbers[POINTS] = diary.counts[0], diary.counts[1]
-    count, path = fields_of(table, members.points[best], members.sizes[best], False, rule, path)
-    fields = np.empty((count, 2), dtype=np.int32)
-    for k in range(count):
-        fields[k, 0], fields[k, 1] = path[k] & X_MASK, path[k] >> X_BITS
-    n, m = diary.counts[0], diary.counts[1]
-    told = np.empty(NUMBERS + 6 * n + m, dtype=np.int64)
-    told[:NUMBERS] = numbers
-    told[NUMBERS : NUMBERS + 6 * n] = diary.changes[:n].ravel()
-    for k in range(m):
-        point = (np.int64(diary.vertices[k, 1]) << X_BITS) + diary.vertices[k, 0]
-        told[NUMBERS + 6 * n + k] = point
-    return told, fields
+    room: Room,
+) -> tuple[Individuals, Diary, Room]:
+    """Cut spurs off the best individual: vertices that moved may leave a way there and back."""
+    best = numbers[INDIVIDUAL]
+    count, path = fields_of(
+        table, members.points[best], members.sizes[best], False, rule, room.path
+    )
+    short = cut_loops(table, path, count, room.order, rule)
+    if short < count:
+        none = np.empty(0, dtype=np.int64)
+        size, total, points, costs = shortened(
+            table, path, short, rule, numbers[LOWER], False, room.order, none
+        )
+        gain = members.totals[best] - total
+        members = put(members, best, points, costs, size, total)
+        diary = noted(diary, members, numbers[EPOCHS], best, LOOPS, gain)
+        numbers[SHARES + LOOPS] += gain
+    return members, diary, Room(room.order, path, room.other, room.child)

@@ -6,8 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.kernels.jit import kernel
-from gapath.kernels.memetic.polygon import length_of
+from gapath.kernels.memetic.account import BEST, CHANGES, INDIVIDUAL, NUMBERS, POINTS
+from gapath.kernels.memetic.polygon import fields_of, length_of
 from gapath.kernels.memetic.rays import field_at, ray
+from gapath.kernels.memetic.steps import X_BITS, X_MASK
 
 RUNGS = 8
 """Places at which two polygons are compared."""
@@ -172,3 +174,33 @@ def after(points: NDArray[np.int32], i: int, passed: int, fields: int) -> tuple[
             return i, passed, x, y
         passed += steps
         i += 1
+
+
+@kernel
+def finished(
+    table: NDArray[np.int32],
+    rule: int,
+    members: Individuals,
+    diary: Diary,
+    numbers: NDArray[np.int64],
+    path: NDArray[np.uint32],
+) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+    """Give what `gapath.kernels.memetic.evolution.evolve` does, of the best individual.
+
+    ``path`` is room for its fields.
+    """
+    best = numbers[INDIVIDUAL]
+    numbers[BEST] = members.totals[best]
+    numbers[CHANGES], numbers[POINTS] = diary.counts[0], diary.counts[1]
+    count, path = fields_of(table, members.points[best], members.sizes[best], False, rule, path)
+    fields = np.empty((count, 2), dtype=np.int32)
+    for k in range(count):
+        fields[k, 0], fields[k, 1] = path[k] & X_MASK, path[k] >> X_BITS
+    n, m = diary.counts[0], diary.counts[1]
+    told = np.empty(NUMBERS + 6 * n + m, dtype=np.int64)
+    told[:NUMBERS] = numbers
+    told[NUMBERS : NUMBERS + 6 * n] = diary.changes[:n].ravel()
+    for k in range(m):
+        point = (np.int64(diary.vertices[k, 1]) << X_BITS) + diary.vertices[k, 0]
+        told[NUMBERS + 6 * n + k] = point
+    return told, fields

@@ -1,4 +1,4 @@
-"""Other ways along the walls: whole ones, and past some vertices of a polygon."""
+"""Ways along the walls: first paths, newcomers, and other ways past some vertices of a polygon."""
 
 from typing import NamedTuple
 
@@ -7,23 +7,45 @@ from numpy.typing import NDArray
 
 from gapath.kernels.graph_search import bits_of
 from gapath.kernels.jit import kernel
+from gapath.kernels.memetic.account import (
+    ASK,
+    CROWDED,
+    EVALUATIONS,
+    HANDS,
+    INDIVIDUAL,
+    MEMBERS,
+    NEWCOMER,
+    READ,
+    SHARES,
+)
 from gapath.kernels.memetic.crossing import cross
 from gapath.kernels.memetic.mutations import distance_below
 from gapath.kernels.memetic.polygon import fields_of, splice
-from gapath.kernels.memetic.population import Individuals, with_room
+from gapath.kernels.memetic.population import (
+    Diary,
+    Individuals,
+    noted,
+    put,
+    same_side,
+    with_room,
+)
 from gapath.kernels.memetic.shortening import (
+    FIXED,
     SHORTENING,
     cut_loops,
     pull,
     running_cost,
     shortened,
 )
-from gapath.kernels.memetic.walls import BOTH, first_path
+from gapath.kernels.memetic.walls import BOTH, GIVEN_UP, first_path, is_narrow
 from gapath.kernels.rng import Stream, high
 
 SPAN, WALK, MARGIN = 3, 4, 16
 """A reroute goes past up to 2**SPAN vertices, and walks WALK times as far as they are apart, and
 MARGIN fields more."""
+
+EARLY, FOREVER = 8, 1 << 40
+"""Steps along walls for each row and column after which to look whether corridors are narrow."""
 
 
 class Room(NamedTuple):
@@ -39,10 +61,7 @@ class Room(NamedTuple):
 @kernel
 def walked_path(
     table: NDArray[np.int32],
-    start_x: int,
-    start_y: int,
-    target_x: int,
-    target_y: int,
+    ends: tuple[int, int, int, int],
     rule: int,
     hands: int,
     budget: int,
@@ -52,7 +71,7 @@ def walked_path(
     stream: Stream,
 ) -> tuple[int, int, NDArray[np.uint32]]:
     """Find a path as `first_path` does, or from the target back to the start."""
-    x, y, u, v = start_x, start_y, target_x, target_y
+    x, y, u, v = ends
     if backward:
         x, y, u, v = u, v, x, y
     count, walked, path = first_path(table, x, y, u, v, rule, hands, budget, varied, path, stream)
@@ -60,6 +79,103 @@ def walked_path(
         for k in range(count // 2):
             path[k], path[count - 1 - k] = path[count - 1 - k], path[k]
     return count, walked, path
+
+
+@kernel
+def first_walk(
+    table: NDArray[np.int32],
+    ends: tuple[int, int, int, int],
+    rule: int,
+    settings: NDArray[np.int64],
+    stream: Stream,
+) -> tuple[int, int, NDArray[np.uint32]]:
+    """Find a first path as `first_path` does; CROWDED instead where corridors prove narrow."""
+    rows, cols = table.shape
+    budget = np.int64(EARLY * (rows + cols) if settings[ASK] else FOREVER)
+    path = np.empty(256, dtype=np.uint32)
+    for _ in range(2):
+        count, walked, path = walked_path(
+            table, ends, rule, settings[HANDS], budget, False, False, path, stream
+        )
+        if count != GIVEN_UP:
+            break
+        if is_narrow(table):
+            return CROWDED, walked, path
+        budget = np.int64(FOREVER)
+    return count, walked, path
+
+
+@kernel
+def newcomers(
+    table: NDArray[np.int32],
+    ends: tuple[int, int, int, int],
+    rule: int,
+    settings: NDArray[np.int64],
+    content: int,
+    budget: int,
+    members: Individuals,
+    diary: Diary,
+    numbers: NDArray[np.int64],
+    room: Room,
+    stream: Stream,
+) -> tuple[Individuals, Diary, Room]:
+    """Fill the population with paths along other walls, each of another homotopy or cheaper.
+
+    The first of them goes from the target back to the start. One hand has no other ways than these
+    two, both have a new one as often as chance makes one of them faster.
+
+    Parameters
+    ----------
+    table, rule, settings, stream
+        As of `evolve`.
+    ends : tuple of int
+        x and y of start and target.
+    content : int
+        A cost to stop at.
+    budget : int
+        How many fields may be read.
+    members, diary, room
+        The population, of one, its diary, and room for paths; each may move.
+    numbers : (NUMBERS,) int64
+        What comes out; MEMBERS, INDIVIDUAL, EVALUATIONS, READ and shares are changed in place.
+
+    Returns
+    -------
+    members, diary, room
+        Where they are now.
+    """
+    hands, population = settings[HANDS], members.sizes.shape[0]
+    none = np.empty(0, dtype=np.int64)
+    for k in range(1, 2 * population if hands == BOTH else min(population, 2)):
+        best, n = numbers[INDIVIDUAL], numbers[MEMBERS]
+        before, left = members.totals[best], budget - numbers[READ]
+        if n == population or before <= content or left <= FIXED:
+            break
+        count, walked, path = walked_path(
+            table, ends, rule, hands, left, k > 1, k & 1 == 1, room.path, stream
+        )
+        room = Room(room.order, path, room.other, room.child)
+        numbers[EVALUATIONS] += 1
+        numbers[READ] += FIXED + walked + SHORTENING * max(count, 0)
+        if count < 0:
+            continue
+        size, total, points, costs = shortened(
+            table, path, count, rule, content, True, room.order, none
+        )
+        row = n
+        for other in range(n):
+            if same_side(table, members.points[other], members.sizes[other], points, size, rule):
+                row = other
+                break
+        if row < n and total >= members.totals[row]:
+            continue
+        members = put(members, row, points, costs, size, total)
+        diary = noted(diary, members, 1, row, NEWCOMER, 0)
+        numbers[MEMBERS] = max(n, row + 1)
+        if total < before:
+            numbers[INDIVIDUAL] = row
+            numbers[SHARES + NEWCOMER] += before - total
+    return members, diary, room
 
 
 @kernel
@@ -142,7 +258,7 @@ def reroute(
         return np.int64(0), np.int64(1), members, room
     budget, backward = WALK * (apart + MARGIN), words[0] & np.uint64(1) == 1
     count, walked, other = walked_path(
-        table, x, y, u, v, rule, hands, budget, hands == BOTH, backward, room.other, stream
+        table, (x, y, u, v), rule, hands, budget, hands == BOTH, backward, room.other, stream
     )
     room = Room(room.order, room.path, other, room.child)
     if count < 0:

@@ -27,7 +27,7 @@ def test_a_walk_back_is_the_one_from_the_target_turned_round(problem, hands, var
         ((problem.target, problem.start), False),
     ):
         count, steps, path = walked_path(
-            problem.map.table, *a, *b, int(problem.corner_cutting), hands, 1 << 40, varied,
+            problem.map.table, (*a, *b), int(problem.corner_cutting), hands, 1 << 40, varied,
             backward, packed([(0, 0)]), stream(seed),
         )  # fmt: skip
         walks.append((count, steps, unpacked(path[: max(count, 0)])))
