@@ -146,6 +146,17 @@ class _Cache(caching.FunctionCache):  # type: ignore[misc]
             super().save_overload(signature, result)
 
 
+def _call_template(template: Callable[..., Any], args: Iterable[Any], kws: Any) -> Any:
+    """Type a kernel's call of another by the kinds of its arguments alone.
+
+    numba would compile the same kernel again for each constant that it is called with, which LLVM
+    folds where it pays.
+    """
+    return template(
+        tuple(map(types.unliteral, args)), {k: types.unliteral(v) for k, v in kws.items()}
+    )
+
+
 JIT: bool = not numba.config.DISABLE_JIT  # type: ignore[attr-defined]
 """Whether kernels are compiled; `intrinsic` gives nothing that Python could run."""
 
@@ -182,6 +193,7 @@ def kernel(function: Callable[..., Any] | None = None, /, *, inner: bool = False
     options = _OPTIONS | {"no_cpython_wrapper": inner}
     compiled = numba.njit(function, **options)
     if JIT:
+        compiled.get_call_template = partial(_call_template, compiled.get_call_template)
         with suppress(RuntimeError):
             compiled._cache = _Cache(function)
     return compiled
