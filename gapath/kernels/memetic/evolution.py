@@ -109,8 +109,8 @@ def evolve(
     blocked, straight = ray(table, start_x, start_y, target_x, target_y, rule)
     if blocked == 0 and straight <= content:
         numbers[STATUS], numbers[SHARES + WALLS] = 2, straight
-        line = np.array([[start_x, start_y], [target_x, target_y]], dtype=np.int32)
-        cost = np.array([straight], dtype=np.int64)
+        line, cost = np.empty((2, 2), dtype=np.int32), np.full(1, straight)
+        line[0, 0], line[0, 1], line[1, 0], line[1, 1] = ends
         members = put(individuals(1, 2), 0, line, cost, 2, straight)
         diary = noted(opened(2), members, 1, 0, WALLS, 0)
         return finished(table, rule, members, diary, numbers, np.empty(0, dtype=np.uint32))
@@ -157,7 +157,7 @@ def evolve(
     return finished(table, rule, members, diary, numbers, room.path)
 
 
-@kernel
+@kernel(inner=True)
 def generations(
     table: NDArray[np.int32],
     rule: int,
@@ -212,7 +212,7 @@ def generations(
     return members, diary, room
 
 
-@kernel
+@kernel(inner=True)
 def pair(k: int, n: int) -> tuple[int, int]:
     """Give the k-th pair of n individuals: (0, 1), (0, 2), ..., (1, 2), ..."""
     row, other = 0, k + 1
@@ -222,7 +222,7 @@ def pair(k: int, n: int) -> tuple[int, int]:
     return row, other
 
 
-@kernel
+@kernel(inner=True)
 def drawn_pair(words: NDArray[np.uint64], n: int) -> tuple[int, int]:
     """Draw two of n individuals."""
     row = high(words[1], n)
@@ -230,7 +230,7 @@ def drawn_pair(words: NDArray[np.uint64], n: int) -> tuple[int, int]:
     return row, other + int(other >= row)
 
 
-@kernel
+@kernel(inner=True)
 def crossover(
     table: NDArray[np.int32],
     row: int,
@@ -261,7 +261,7 @@ def crossover(
     return row, gain, fields, members, room
 
 
-@kernel
+@kernel(inner=True)
 def mutation(
     table: NDArray[np.int32],
     row: int,
@@ -300,7 +300,7 @@ def mutation(
     return VERTICES + kind, gain, fields, members, room
 
 
-@kernel
+@kernel(inner=True)
 def unlooped(
     table: NDArray[np.int32],
     rule: int,

@@ -57,7 +57,8 @@ def splice(
             costs[k + shift] = costs[k]
     for k in range(count):
         points[i + 1 + k, 0], points[i + 1 + k, 1] = new[k, 0], new[k, 1]
-    costs[i : i + count + 1] = new_costs[: count + 1]
+    for k in range(count + 1):
+        costs[i + k] = new_costs[k]
     return size + shift
 
 

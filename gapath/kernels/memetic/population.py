@@ -1,4 +1,7 @@
-"""The population: polygons of different homotopy, and a diary of all that it took in."""
+"""The population: polygons of different homotopy, and a diary of all that it took in.
+
+Numbers are copied one by one: numba takes seconds to compile the copying of slices.
+"""
 
 from typing import NamedTuple
 
@@ -62,10 +65,11 @@ def with_room(members: Individuals, vertices: int) -> Individuals:
         return members
     wider = individuals(members.points.shape[0], 2 * vertices)
     for k in range(members.points.shape[0]):
-        n = members.sizes[k]
-        wider.points[k, :n] = members.points[k, :n]
-        wider.costs[k, :n] = members.costs[k, :n]
-        wider.sizes[k], wider.totals[k] = n, members.totals[k]
+        wider.sizes[k], wider.totals[k] = members.sizes[k], members.totals[k]
+        for i in range(members.sizes[k]):
+            wider.points[k, i, 0] = members.points[k, i, 0]
+            wider.points[k, i, 1] = members.points[k, i, 1]
+            wider.costs[k, i] = members.costs[k, i]
     return wider
 
 
@@ -80,13 +84,15 @@ def put(
 ) -> Individuals:
     """Put a polygon in a row; gives the population, which may have moved."""
     members = with_room(members, size)
-    members.points[row, :size] = points[:size]
-    members.costs[row, : size - 1] = costs[: size - 1]
+    for i in range(size):
+        members.points[row, i, 0], members.points[row, i, 1] = points[i, 0], points[i, 1]
+    for i in range(size - 1):
+        members.costs[row, i] = costs[i]
     members.sizes[row], members.totals[row] = size, total
     return members
 
 
-@kernel
+@kernel(inner=True)
 def opened(vertices: int) -> Diary:
     """Open a diary with room for a few changes of polygons of so many vertices."""
     return Diary(
@@ -105,13 +111,18 @@ def noted(
     n, m, size = counts[0], counts[1], members.sizes[row]
     if n == changes.shape[0]:
         more = np.empty((2 * n, 6), dtype=np.int64)
-        more[:n] = changes
+        for i in range(n):
+            for k in range(6):
+                more[i, k] = changes[i, k]
         changes = more
     if m + size > vertices.shape[0]:
         further = np.empty((2 * (m + size), 2), dtype=np.int32)
-        further[:m] = vertices[:m]
+        for i in range(m):
+            further[i, 0], further[i, 1] = vertices[i, 0], vertices[i, 1]
         vertices = further
-    vertices[m : m + size] = members.points[row, :size]
+    for i in range(size):
+        vertices[m + i, 0] = members.points[row, i, 0]
+        vertices[m + i, 1] = members.points[row, i, 1]
     counts[0], counts[1] = n + 1, m + size
     changes[n, EPOCH], changes[n, ROW], changes[n, OPERATOR] = epoch, row, operator
     changes[n, GAIN], changes[n, TOTAL], changes[n, END] = gain, members.totals[row], m + size
@@ -176,7 +187,7 @@ def after(points: NDArray[np.int32], i: int, passed: int, fields: int) -> tuple[
         i += 1
 
 
-@kernel
+@kernel(inner=True)
 def finished(
     table: NDArray[np.int32],
     rule: int,
@@ -198,8 +209,10 @@ def finished(
         fields[k, 0], fields[k, 1] = path[k] & X_MASK, path[k] >> X_BITS
     n, m = diary.counts[0], diary.counts[1]
     told = np.empty(NUMBERS + 6 * n + m, dtype=np.int64)
-    told[:NUMBERS] = numbers
-    told[NUMBERS : NUMBERS + 6 * n] = diary.changes[:n].ravel()
+    for k in range(NUMBERS):
+        told[k] = numbers[k]
+    for k in range(6 * n):
+        told[NUMBERS + k] = diary.changes[k // 6, k % 6]
     for k in range(m):
         point = (np.int64(diary.vertices[k, 1]) << X_BITS) + diary.vertices[k, 0]
         told[NUMBERS + 6 * n + k] = point

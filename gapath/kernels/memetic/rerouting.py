@@ -81,7 +81,7 @@ def walked_path(
     return count, walked, path
 
 
-@kernel
+@kernel(inner=True)
 def first_walk(
     table: NDArray[np.int32],
     ends: tuple[int, int, int, int],
@@ -105,7 +105,7 @@ def first_walk(
     return count, walked, path
 
 
-@kernel
+@kernel(inner=True)
 def newcomers(
     table: NDArray[np.int32],
     ends: tuple[int, int, int, int],

@@ -139,7 +139,8 @@ def grown(buffer: NDArray[np.uint32], count: int, needed: int) -> NDArray[np.uin
     if needed <= buffer.shape[0]:
         return buffer
     larger = np.empty(max(needed, 2 * buffer.shape[0]), dtype=np.uint32)
-    larger[:count] = buffer[:count]
+    for k in range(count):
+        larger[k] = buffer[k]
     return larger
 
 
@@ -223,7 +224,8 @@ def first_path(
             walked += more
             if how == FULL:
                 longer = np.empty((2, 2 * steps.shape[1]), dtype=np.uint32)
-                longer[:, : steps.shape[1]] = steps
+                for k in range(steps.shape[1]):
+                    longer[0, k], longer[1, k] = steps[0, k], steps[1, k]
                 steps = longer
         length = state[hand, LENGTH]
         if how == SPENT:
@@ -234,7 +236,8 @@ def first_path(
                 return NO_WAY, walked, path
             length = state[hand, AT]
         path = grown(path, count, count + length)
-        path[count : count + length] = steps[hand, :length]
+        for k in range(length):
+            path[count + k] = steps[hand, k]
         count += length
         x, y = np.int64(path[count - 1] & X_MASK), np.int64(path[count - 1] >> X_BITS)
         if x == target_x and y == target_y:
