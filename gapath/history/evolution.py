@@ -28,7 +28,8 @@ class Population(NamedTuple):
     vertices: NDArray[np.int32]
     """(sum, 2) vertices as (x, y), one polygon after another, start and target included."""
     names: tuple[str, ...]
-    """What makes and changes individuals: "wall following", "crossover", "shortcut", ..."""
+    """What makes and changes individuals: the first one is what found the first path ("wall
+    following", "search"), then "crossover", "shortcut", ..."""
     shares: tuple[float, ...]
     """By how much each of `names` lowered the cost of the best individual so far; the first one's
     is what the first path cost, so that ``shares[0] - sum(shares[1:])`` is the final cost."""

@@ -32,6 +32,7 @@ from gapath.kernels.memetic.account import (
     STATUS,
     UNEVEN,
     UNIT,
+    WALLS,
 )
 from gapath.kernels.memetic.evolution import evolve
 from gapath.kernels.memetic.polygon import fields_of
@@ -130,7 +131,8 @@ class Planner:
         least = grid.least_weight(problem.start, problem.target)
         table = grid.table
         ends, settings = (x, y, u, v), self.kernel_settings
-        told, path = evolve(table, *ends, int(rule), least, settings, _UNKNOWN, stream)
+        known = _UNKNOWN
+        told, path = evolve(table, *ends, int(rule), least, settings, known, stream)
         expansions, proved = 0, False
         if told[STATUS] in (UNEVEN, CROWDED):
             large = told[STATUS] == UNEVEN and table.size > LARGE
@@ -138,25 +140,22 @@ class Planner:
             if searched.status is PlanStatus.INFEASIBLE:
                 return searched
             expansions, proved = searched.expansions, not large
-            walls = int(told[SHARES])
-            found = searched.path.astype(np.uint32)
-            known: NDArray[np.uint32] = np.bitwise_or(found[:, 1] << X_BITS, found[:, 0])
-            if large and searched.cost * SCALE >= walls + table[y, x]:  # or it found nothing
-                known = _UNKNOWN
+            # a large map's may be dearer than the walls', or there is none
+            if proved or searched.cost * SCALE < told[SHARES] + table[y, x]:
+                found = searched.path.astype(np.uint32)
+                known = np.bitwise_or(found[:, 1] << X_BITS, found[:, 0])
             settings = settings.copy()
             settings[ASK] = 0
             if proved:  # it cannot become cheaper
                 settings[EFFORT] = 0
             told, path = evolve(table, *ends, int(rule), least, settings, known, stream)
-            walls = max(walls, int(told[SHARES]))  # nothing, where hands gave up
-            told[SHARES + SEARCH] = walls - told[SHARES]
-            told[SHARES] = walls
         numbers: list[int] = told[:CHANGES].tolist()
         if numbers[STATUS] < 0:
             return Plan(PlanStatus.INFEASIBLE)
         best = numbers[BEST]
         # a robot's table changes; only where no diagonal step is allowed it is asked again
-        result = _Result(told, table.copy() if rule is _STRAIGHT else None)
+        began = SEARCH if len(known) else WALLS
+        result = _Result(told, table.copy() if rule is _STRAIGHT else None, began)
         return Plan(
             PlanStatus.OPTIMAL if best <= numbers[LOWER] or proved else PlanStatus.FOUND,
             path,
@@ -178,6 +177,8 @@ class _Result(NamedTuple):
     told: NDArray[np.int64]
     table: Table | None
     """The map, where rays go by way of fields between two vertices."""
+    began: int
+    """What found the first path: WALLS or SEARCH."""
 
     @property
     def changes(self) -> NDArray[np.int64]:
@@ -214,7 +215,9 @@ class _Result(NamedTuple):
         polygons = [self.polygon(i) for i in range(len(changes))]
         costs = (changes[:, TOTAL] + told[START]) / SCALE
         shares = told[SHARES:NUMBERS].copy()
-        shares[0] += told[START]
+        shares[WALLS] += told[START]
+        names = list(NAMES)  # what found the first path comes first, whatever it was
+        names[WALLS], names[self.began] = names[self.began], names[WALLS]
         population = Population(
             epochs=changes[:, EPOCH].astype(np.int32),
             individuals=changes[:, ROW].astype(np.int32),
@@ -223,7 +226,7 @@ class _Result(NamedTuple):
             costs=costs,
             ends=np.cumsum([len(polygon) for polygon in polygons]).astype(np.int32),
             vertices=np.concatenate(polygons),
-            names=NAMES,
+            names=tuple(names),
             shares=tuple((shares / SCALE).tolist()),
         )
         standing = population.standing(int(told[EPOCHS]))

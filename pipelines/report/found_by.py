@@ -16,7 +16,7 @@ def found_by(shares: Sequence[Mapping[str, float]]) -> Table:
     ----------
     shares : sequence of dict of str to float
         What a planner tells of each trial (`gapath.history.evolution.Population.shares`): name ->
-        cost, the first one's that of the first path. At least one trial.
+        cost, the first one's that of the first path, whatever found it. At least one trial.
 
     Returns
     -------
@@ -24,9 +24,10 @@ def found_by(shares: Sequence[Mapping[str, float]]) -> Table:
         A row for the first path, one for each other name that lowered the cost, and one for the
         path that was found: medians over the trials, and in how many of them.
     """
-    told = pd.DataFrame(list(shares)).fillna(0.0)
-    first, lowered = told.iloc[:, 0], told.iloc[:, 1:]
-    rows = {f"first path: {told.columns[0]}": first}
+    began = [next(iter(each.items())) for each in shares]
+    first = pd.Series([cost for _, cost in began])
+    lowered = pd.DataFrame([dict(list(each.items())[1:]) for each in shares]).fillna(0.0)
+    rows = {f"first path: {' or '.join(dict.fromkeys(name for name, _ in began))}": first}
     others = [name for name in lowered if lowered[name].any()]
     rows |= {f"lowered by {name}": lowered[name] for name in others}
     rows["path found"] = first - lowered.sum(axis=1)
@@ -37,7 +38,7 @@ def found_by(shares: Sequence[Mapping[str, float]]) -> Table:
             "what": list(rows),
             **{name: [q[i] for q in quartiles] for i, name in enumerate(("cost", "q1", "q3"))},
             "part": [part.median() for part in parts],
-            "trials": [len(told), *(int((lowered[name] > 0).sum()) for name in others), len(told)],
+            "trials": [len(shares), *(int((lowered[name] > 0).sum()) for name in others), len(shares)],
         }
     )
     shown = pd.DataFrame(
@@ -49,7 +50,7 @@ def found_by(shares: Sequence[Mapping[str, float]]) -> Table:
         }
     )
     caption = (
-        f"Cost, medians (quartiles) over the {len(told)} trials of the log that tell it, each by "
+        f"Cost, medians (quartiles) over the {len(shares)} trials of the log that tell it, each by "
         "itself: what the first path cost, by how much it was lowered since, what the path found "
         "costs."
     )

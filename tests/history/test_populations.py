@@ -50,6 +50,7 @@ def check_population(problem, plan):
     assert len(set(population.names)) == len(population.names) == len(population.shares)
     assert population.shares[0] - sum(population.shares[1:]) == plan.cost
     assert min(population.shares) >= 0
+    assert population.operators[0] == 0  # what found the first path, whose cost is shares[0]
 
     before = {}
     for i, individual in enumerate(population.individuals.tolist()):

@@ -165,7 +165,28 @@ def test_shares_are_at_one_with_the_path_where_hands_gave_up():
     shares = list(plan.shares().values())
     assert plan.status is PlanStatus.OPTIMAL and plan.expansions > 0
     assert plan.cost == shortest_path(problem).cost == shares[0] - sum(shares[1:])
-    assert min(shares) >= 0
+    assert min(shares) >= 0 and began_with(plan) == "search"
+
+
+def began_with(plan):
+    """Say what a plan tells of its first path, in its history and its shares alike."""
+    population = plan.evolution.population
+    (told,) = {next(iter(plan.shares())), population.names[population.operators[0]]}
+    return told
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_first_path_is_what_found_it(name):
+    hill = np.full((40, 60), 0.5)
+    hill[10:30, 20:40] = 0.75
+    wall = np.full((40, 60), 0.5)
+    wall[:30, 30] = 1.0
+    for weights, expected in ((hill, "search"), (wall, "wall following")):
+        problem = Problem(GridMap("one", weights), (0, 20), (59, 20))
+        plan = make(name).plan(problem, stream(1))
+        assert began_with(plan) == expected and (plan.expansions > 0) == (expected == "search")
+        first, *lowered = plan.shares().values()
+        assert first - sum(lowered) == plan.cost
 
 
 def test_no_way_is_proved_where_hands_gave_up():
@@ -187,3 +208,4 @@ def test_a_coarse_path_that_is_dearer_than_the_walls_is_not_taken(monkeypatch):
     monkeypatch.setattr(memetic, "coarse_path", lambda _: Plan(PlanStatus.FOUND, path, cost))
     plan = make().plan(problem, stream(1))
     assert plan.cost < cost and min(plan.shares().values()) >= 0
+    assert began_with(plan) == "wall following"

@@ -219,6 +219,15 @@ def test_shares_are_told_by_hand():
     assert table.data["trials"].tolist() == [3, 2, 1, 3]
 
 
+def test_shares_of_trials_that_began_otherwise_are_told_together():
+    shares = [{"wall": 10.0, "pull": 2.0, "search": 0.0}, {"search": 6.0, "pull": 1.0, "wall": 0.0}]
+    table = found_by(shares)
+    assert table.data["what"].tolist() == [
+        "first path: wall or search", "lowered by pull", "path found"
+    ]  # fmt: skip
+    assert table.data["cost"].tolist() == [8, 1.5, 6.5]
+
+
 def test_a_run_that_does_not_tell_it_has_no_such_table(tmp_path, make_run):
     run = make_run(tmp_path, "table1", "kg18_test3", "ga1", n=8)
     assert stills_of(read_record(run)).shares == []
