@@ -34,9 +34,6 @@ from gapath.scenario.drawn import draw_queries
 from gapath.scenario.listed import Queries
 from gapath.task import Batch, Trial, metrics
 
-FIRST_PATH = "first path"
-"""What a planner calls the stage that ends with its first path, if it tells of one."""
-
 _FIELDS_OF_A_BUCKET = 4
 """By so much MovingAI divides the optimal length, diagonals sqrt(2), for its buckets."""
 
@@ -46,13 +43,11 @@ class ScenarioRow(PlanRow):
     """A row of ``trials.parquet``: a planning query, one of a scenario.
 
     `row` is its number there, from 0; `bucket` its class of difficulty, where the scenario gives
-    none the octile length of the path of least cost over four, -1 without a path; `first_path_s`
-    the time of the stage that ends with the first path, NaN of planners that tell of none.
+    none the octile length of the path of least cost over four, -1 without a path.
     """
 
     row: int
     bucket: int
-    first_path_s: float
 
 
 @dataclass
@@ -245,7 +240,6 @@ class Task:
             **values,
             row=int(queries.numbers[asked.place]),
             bucket=_bucket(queries, asked),
-            first_path_s=answer.plan.stages.get(FIRST_PATH, math.nan),
         )
 
     def summary(self, rows: list[ScenarioRow]) -> dict[str, object]:

@@ -109,7 +109,7 @@ def summarised(trials: pd.DataFrame, by: list[str]) -> pd.DataFrame:
         A row a group and planner: `by`, method; problems, n; success with its 95 % Wilson interval;
         mean, median, 99th percentile and maximum of cost_ratio, of paths found; median and total of
         seconds, of all trials; times_exact, how many times their mean goes into A*'s on the same
-        group; medians of first_path_s, expansions and evaluations, of the metrics of paths found,
+        group; medians of expansions and evaluations, of the metrics of paths found,
         and of length_ratio.
     """
     names, groups = grouped(trials, [*by, "method"])
@@ -128,7 +128,7 @@ def _sums(trials: pd.DataFrame, groups: Groups) -> dict[str, Any]:
         return values.groupby(groups.of)
 
     ratio, seconds = of("cost_ratio"), of("plan_time_s")
-    medians = ("first_path_s", "length_ratio", "expansions", "evaluations", *metrics())
+    medians = ("length_ratio", "expansions", "evaluations", *metrics())
     return {
         "problems": groups.distinct(trials["problem"]),
         "n": groups.sizes,
@@ -167,7 +167,6 @@ EFFORT = (
     Column("Time, ms", "seconds_median", 1000.0),
     Column("Time in all, s", "seconds_total"),
     Column("A*'s / its", "times_exact"),
-    Column("First path, ms", "first_path_s_median", 1000.0),
     Column("Expansions", "expansions_median"),
     Column("Evaluations", "evaluations_median"),
 )

@@ -24,6 +24,7 @@ def found_by(shares: Sequence[Mapping[str, float]]) -> Table:
         A row for the first path, one for each other name that lowered the cost, and one for the
         path that was found: medians over the trials, and in how many of them.
     """
+    n = len(shares)
     began = [next(iter(each.items())) for each in shares]
     first = pd.Series([cost for _, cost in began])
     lowered = pd.DataFrame([dict(list(each.items())[1:]) for each in shares]).fillna(0.0)
@@ -38,7 +39,7 @@ def found_by(shares: Sequence[Mapping[str, float]]) -> Table:
             "what": list(rows),
             **{name: [q[i] for q in quartiles] for i, name in enumerate(("cost", "q1", "q3"))},
             "part": [part.median() for part in parts],
-            "trials": [len(shares), *(int((lowered[name] > 0).sum()) for name in others), len(shares)],
+            "trials": [n, *(int((lowered[name] > 0).sum()) for name in others), n],
         }
     )
     shown = pd.DataFrame(
@@ -50,7 +51,7 @@ def found_by(shares: Sequence[Mapping[str, float]]) -> Table:
         }
     )
     caption = (
-        f"Cost, medians (quartiles) over the {len(shares)} trials of the log that tell it, each by "
+        f"Cost, medians (quartiles) over the {n} trials of the log that tell it, each by "
         "itself: what the first path cost, by how much it was lowered since, what the path found "
         "costs."
     )

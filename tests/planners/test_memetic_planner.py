@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from naive_memetic import walled_problems
 
+from gapath.api import load_map
 from gapath.components import build
 from gapath.discovery import yaml_values
 from gapath.errors import InputError
@@ -173,6 +174,14 @@ def began_with(plan):
     population = plan.evolution.population
     (told,) = {next(iter(plan.shares())), population.names[population.operators[0]]}
     return told
+
+
+def test_memetic_first_does_what_memetic_does_first():
+    rooms = load_map("field_rooms", width=200, height=100)
+    problem = Problem(rooms, rooms.start, rooms.target)
+    whole, first = make().plan(problem, stream(1)), make("memetic_first").plan(problem, stream(2))
+    assert whole.evaluations > first.evaluations == 1
+    assert np.array_equal(whole.evolution.population.polygon(0), first.lines())
 
 
 @pytest.mark.parametrize("name", NAMES)
