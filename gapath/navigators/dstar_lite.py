@@ -74,7 +74,7 @@ class Repair:
         (x, y), (u, v) = query.start, query.target
         cost = int(self._search.rhs[y * query.map.cols + x]) >> LENGTH_BITS
         total = cost + int(query.map.table[v, u])
-        return Plan(PlanStatus.FOUND, path, total / SCALE, expansions=int(expansions))
+        return Plan(PlanStatus.OPTIMAL, path, total / SCALE, expansions=int(expansions))
 
     def _follow(self, robot: Field, least: int) -> None:
         """Move the robot; keys already queued stay lower bounds, or are made anew."""

@@ -73,7 +73,8 @@ class Planner(Clearance):
         Returns
         -------
         Plan
-            The planner's; INFEASIBLE if the robot does not fit at an end.
+            The planner's, FOUND if it is OPTIMAL only where obstacles have grown; INFEASIBLE if the
+            robot does not fit at an end.
         """
         stages = Stages()
         grown = self._grown(problem)
@@ -83,7 +84,8 @@ class Planner(Clearance):
                 return Plan(PlanStatus.INFEASIBLE, stages=stages.seconds)
         plan: Plan = self.planner.plan(grown, stream)
         stages.end("planning")
-        return dataclasses.replace(plan, stages=stages.seconds | dict(plan.stages))
+        status = PlanStatus.FOUND if plan.feasible else plan.status
+        return dataclasses.replace(plan, status=status, stages=stages.seconds | dict(plan.stages))
 
     def _grown(self, problem: Query) -> "_Grown":
         obstacles = dilate(self.obstacles(problem), self.growth(problem))

@@ -83,8 +83,8 @@ class Planner:
         Returns
         -------
         Plan
-            FOUND, or INFEASIBLE where no path exists; NOT_FOUND for what `check` refuses and a
-            robot has come to know only now.
+            OPTIMAL, by length FOUND, or INFEASIBLE where no path exists; NOT_FOUND for what `check`
+            refuses and a robot has come to know only now.
         """
         if not self._takes(problem):
             return Plan(PlanStatus.NOT_FOUND)
@@ -96,7 +96,8 @@ class Planner:
             return Plan(PlanStatus.INFEASIBLE, expansions=int(expansions[0]))
         path = jumped_path(turns[:count], table.shape[1], rule)
         total = weights_of(table, path)
-        return Plan(PlanStatus.FOUND, path, total / SCALE, expansions=int(expansions[0]))
+        status = PlanStatus.FOUND if self.minimise == "length" else PlanStatus.OPTIMAL
+        return Plan(status, path, total / SCALE, expansions=int(expansions[0]))
 
     def _takes(self, problem: Query) -> bool:
         if self.minimise == "length":

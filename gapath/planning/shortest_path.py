@@ -28,9 +28,9 @@ def shortest_path(problem: Query, informed: bool = True, by_length: bool = False
     Returns
     -------
     Plan
-        FOUND, or INFEASIBLE where no path exists. Its cost is eq. (5) either way. (If the search
-        comes to a path of more than two million fields, it is one of least cost, whose fields
-        are not counted.)
+        OPTIMAL, by length FOUND, or INFEASIBLE where no path exists. Its cost is eq. (5) either
+        way. (If the search comes to a path of more than two million fields, it is one of least
+        cost, whose fields are not counted.)
     """
     grid, table = problem.map, problem.map.table
     (x, y), (u, v) = problem.start, problem.target
@@ -46,4 +46,5 @@ def shortest_path(problem: Query, informed: bool = True, by_length: bool = False
         return Plan(PlanStatus.INFEASIBLE, expansions=int(expansions[0]))
     path = path_to(states, table.shape[1], u, v)
     total = weights_of(table, path) if by_length else int(cost) + int(table[y, x])
-    return Plan(PlanStatus.FOUND, path, total / SCALE, expansions=int(expansions[0]))
+    status = PlanStatus.FOUND if by_length else PlanStatus.OPTIMAL
+    return Plan(status, path, total / SCALE, expansions=int(expansions[0]))

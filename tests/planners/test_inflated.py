@@ -36,7 +36,8 @@ def test_it_plans_as_on_a_map_that_was_grown_by_hand(problem, radius, by_length)
         GridMap("grown", weights), problem.start, problem.target, problem.corner_cutting
     )
     expected = inner.plan(by_hand, rng.stream(0))
-    assert plan.status is expected.status
+    assert plan.feasible == expected.feasible
+    assert plan.status is not PlanStatus.OPTIMAL  # a robot that is a point may have a cheaper path
     assert plan.path.tolist() == expected.path.tolist()
     assert plan.cost == expected.cost
     if plan.feasible:

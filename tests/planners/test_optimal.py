@@ -16,6 +16,7 @@ from gapath.kernels.rng import stream
 from gapath.planning.path import octile_length
 from gapath.planning.planner import Optimal, Particular
 from gapath.planning.shortest_path import shortest_path
+from gapath.problem import PlanStatus
 
 PLANNERS = {name: build("planner", yaml_values("planner", name), "planner")
             for name in yaml_names("planner")}  # fmt: skip
@@ -47,3 +48,5 @@ def test_what_an_optimal_planner_finds_is_the_least(name, problem, even):
         assert octile_length(plan.path) == pytest.approx(octile_length(best.path))
     else:
         assert plan.cost == best.cost
+    if plan.feasible:  # the least length is no proof of the least cost
+        assert plan.status is (PlanStatus.FOUND if by_length else PlanStatus.OPTIMAL)

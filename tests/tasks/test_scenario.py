@@ -72,7 +72,7 @@ def test_a_row_of_the_file_is_a_row_with_its_own_problem(here):
         (b, str((x, y)), str((u, v)), n) for b, x, y, u, v, n in ROWS
     ]
     assert [row.status for row in rows] == [
-        "found", "found", "infeasible", "infeasible", "found", "found"
+        "optimal", "optimal", "infeasible", "infeasible", "optimal", "optimal"
     ]  # fmt: skip
     for row in rows:
         feasible = row.feasible
