@@ -268,7 +268,7 @@ class Plan(Answer, Shown):
         Raises
         ------
         InputError
-            If the planner keeps no history, as a graph search does.
+            If there is no history: a graph search keeps none, and without any path nothing evolves.
         """
         from gapath.pictures.curves import draw_convergence
 
@@ -289,7 +289,7 @@ class Plan(Answer, Shown):
         Raises
         ------
         InputError
-            If the planner keeps no history, as a graph search does.
+            If there is no history: a graph search keeps none, and without any path nothing evolves.
         """
         from gapath.pictures.animation import growing_path
 
@@ -315,8 +315,11 @@ class Plan(Answer, Shown):
 
     def _history(self) -> Evolution:
         if self.evolution is None:
-            right = "the plan of a genetic algorithm: other planners keep none"
-            raise InputError("plan.evolution", "no history", right)
+            found, right = "no history", "the plan of a genetic algorithm: other planners keep none"
+            if self.status is PlanStatus.INFEASIBLE:
+                found = "no history, as no path exists"
+                right = "a genetic algorithm's plan of a problem with a path: else nothing evolves"
+            raise InputError("plan.evolution", found, right)
         return self.evolution
 
     def _told(self) -> dict[str, object]:
