@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from gapath.driving.followed import followed
 from gapath.errors import require
-from gapath.events import Called, DriveFinished, Event, Outcome, PathsChanged, Stepped
+from gapath.events import Called, DriveFinished, Event, Outcome, Stepped
 from gapath.kernels.units import OBSTACLE, SCALE
 from gapath.pictures.shown import Shown
 from gapath.planning.path import without_stands
@@ -149,14 +150,8 @@ class Drive(Shown):
 
     @cached_property
     def _paths(self) -> list[NDArray[np.int32]]:
-        """The path that it followed at each step, as it was when it became the current one."""
-        paths, now = [], no_path()
-        for event in self.events:
-            if isinstance(event, PathsChanged):
-                now = event.path
-            elif isinstance(event, Stepped):
-                paths.append(now)
-        return paths
+        """The path that it followed at the end of each step, as far as it knew it to be free."""
+        return [each.path for each in followed(self.problem, self.events)]
 
     def _told(self) -> dict[str, object]:
         return {

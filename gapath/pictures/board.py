@@ -180,7 +180,7 @@ class Robot:
         places : (n, 2) int32
             Where it was, as (x, y), the last one where it is.
         path : (m, 2) int32
-            The path that it follows.
+            The path that it follows, as far as it knows it to be free.
         """
         unknown = np.isnan(known)
         self._map.set_data(_cost(np.where(unknown, weights, known)))

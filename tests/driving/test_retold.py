@@ -1,5 +1,7 @@
 """A drive as its events tell it."""
 
+import math
+
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -8,6 +10,7 @@ import gapath
 from gapath.components import build
 from gapath.discovery import yaml_values
 from gapath.driving.drive import Sensor, drive
+from gapath.driving.followed import followed
 from gapath.driving.retold import Drive
 from gapath.driving.told import drive_events
 from gapath.driving.world import Changes
@@ -40,6 +43,7 @@ CASES = {
     "blind alleys": ("kg18_map4", "kg18", Changes(0, 1, 1), None, 2000),
     "a map that changes": ("kg18_map2", "replan_astar", Changes(3, 20, 6), None, 2000),
     "walls known before": ("kg18_map3", "replan_astar", Changes(0, 1, 1), "kg18_map3", 2000),
+    "along walls": ("kg18_map4", "memetic", Changes(0, 1, 1), None, 2000),
     "too few steps": ("kg18_map3", "kg18", Changes(0, 1, 1), None, 30),
 }
 
@@ -85,6 +89,26 @@ def test_what_was_known_at_a_step_is_what_the_navigator_was_shown(case):
     assert np.array_equal(told.known(), told.known(told.steps), equal_nan=True)
 
 
+def test_what_it_follows_ends_where_it_has_seen_the_path_cut(case):
+    told, driven, watching = case
+    tables = [*watching.tables, watching.map.table]
+    every = followed(told.problem, told.events)
+    assert len(every) == told.steps + 1
+    assert every[0].path.tolist() == [] and math.isnan(every[0].left)
+    for step, (now, frame) in enumerate(zip(every[1:], driven.frames[1:], strict=True), 1):
+        path = frame.decision.path
+        if path is None:
+            assert now.path.tolist() == [] and not now.cut and math.isnan(now.left)
+            continue
+        path = path[int(tuple(path[1].tolist()) == frame.place) :]
+        assert tuple(path[0].tolist()) == frame.place
+        x, y = path.T
+        assert now.left == weights_of(tables[step - 1])[y, x].sum()
+        blocked = np.flatnonzero(tables[step][y, x] >= OBSTACLE)
+        assert now.cut == (len(blocked) > 0)
+        assert now.path.tolist() == path[: blocked[0] if now.cut else None].tolist()
+
+
 def test_a_step_that_there_was_not_is_refused(case):
     told = case[0]
     for step in (-1, told.steps + 1):
@@ -119,6 +143,6 @@ def test_its_animation_shows_every_chosen_moment_as_it_was(case):
         assert robot.tolist() == told.places[step : step + 1].tolist()
         tint = axes.images[1].get_array()[..., 3] > 0
         assert tint.tolist() == np.isnan(told.known(step)).tolist()
-        if len(path):  # the path on which it goes leads over its field
-            assert told.places[step].tolist() in path.astype(int).tolist()
+        if len(path):  # the path on which it goes on begins there
+            assert told.places[step].tolist() == path.astype(int).tolist()[0]
         assert f"step {step} of {told.steps}" in axes.get_title()

@@ -11,6 +11,7 @@ from log_events import example_drives, logged
 from matplotlib.path import Path as Polygon
 from recordings import centres, read, record, rerun_command
 
+from gapath.driving.followed import followed
 from gapath.events import (
     NEVER_LEFT,
     Called,
@@ -113,12 +114,16 @@ def test_it_looks_from_where_it_was(found, events):
 
 
 def test_paths_where_they_change(found, events):
-    changes = of(events, PathsChanged)
-    for entity, name in (("/map/current_path", "path"), ("/map/past_path", "past")):
-        expected = []
-        for event in changes:
-            path = getattr(event, name).tolist()
-            expected.append((event.step, [centres(path)] if len(path) > 1 else []))
+    changed = {event.step: event.past.tolist() for event in of(events, PathsChanged)}
+    follows = followed(events[0].problem, events)
+    now = [each.path.tolist() for each in follows]
+    again = {*changed, *(step for step, each in enumerate(follows) if each.cut)}
+    assert again > {*changed}  # what it sees cuts the first path
+    for entity, paths in (
+        ("/map/current_path", [(step, now[step]) for step in sorted(again)]),
+        ("/map/past_path", list(changed.items())),
+    ):
+        expected = [(step, [centres(path)] if len(path) > 1 else []) for step, path in paths]
         assert found[entity, "LineStrips2D:strips"] == expected
 
 
@@ -139,6 +144,21 @@ def test_an_answer_is_shown_in_its_step_only(found, events):
     ]
 
 
+def test_a_call_that_comes_again_step_by_step_is_listed_once(tmp_path, events):
+    path = np.array([[0, 0], [1, 1]], dtype=np.int32)
+    along = [Answer(PlanStatus.FOUND, path, cost) for cost in (7.5, 7.5, 7.5, 7.0, 7.0)]
+    calls = [Called(step, 0, "C", 0, True, answer)
+             for step, answer in zip((1, 2, 3, 4, 6), along, strict=True)]  # fmt: skip
+    others = [event for event in events if not isinstance(event, Called)]
+    record(tmp_path, [*others[:-2], *calls, *others[-2:]])
+    found = read(tmp_path / "trial-0.rrd")["/calls", "TextLog:text"]
+    assert [(step, text[0]) for step, text in found] == [
+        (1, "C0 found: 7.5, adopted, 3 steps in a row"),
+        (4, "C0 found: 7, adopted"),
+        (6, "C0 found: 7, adopted"),
+    ]
+
+
 def test_modes_as_a_band(found):
     assert found["/mode", "StateChange:state"] == [
         (0, ["explore"]), (1, ["replan"]), (2, ["explore"]), (4, ["return"]), (5, ["explore"]),
@@ -146,21 +166,9 @@ def test_modes_as_a_band(found):
 
 
 def test_cost_left(found, events):
-    grid = events[0].problem.map
-    known = {(0, 0): grid.weights[0, 0], (8, 6): grid.weights[6, 8]}
-    path, expected = [], []
-    for event in events:
-        if isinstance(event, PathsChanged):
-            path = list(map(tuple, event.path.tolist()))
-        elif isinstance(event, Stepped):
-            for x, y in event.fields.tolist():
-                known[x, y] = grid.weights[y, x]
-            if event.place in path:
-                path = path[path.index(event.place) :]
-            weights = [known.get(place, 0.5) for place in path]
-            expected.append(sum(weights) if weights and 1 not in weights else math.nan)
+    expected = [each.left for each in followed(events[0].problem, events)]
     drawn = [row[0] for _, row in found["/cost/left", "Scalars:scalars"]]
-    np.testing.assert_allclose(drawn, expected, atol=1e-4)
+    np.testing.assert_array_equal(drawn, expected)
     assert np.isnan(expected).tolist().count(False) > 5
 
 

@@ -1,13 +1,17 @@
 """What a Rerun recording shows of a population, read back from its file, also from a log."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import rerun as rr
+import rerun.blueprint as rrb
 from log_events import example_memetic, write
 from recordings import centres, read, record, rerun_command
 
 from gapath.commands import log as log_cli
 from gapath.events import Evolved
+from gapath.recorders.rerun import scene
 
 
 @pytest.fixture(autouse=True)
@@ -66,7 +70,7 @@ def test_every_individual_and_every_change_read_back(tmp_path):
         assert best[0, -1] == population.costs[population.standing(epochs)[-1]].min()
         text = found["/text", "TextDocument:text"][0]
         first, *others = population.shares
-        assert f"| cost of the first path, first bend | {first:.10g} |" in text
+        assert f"| first path, first bend | {first:.10g} |" in text
         for name, share in zip(population.names[1:], others, strict=True):
             assert (f"| lowered by {name} | {share:.10g} |" in text) is bool(share)
 
@@ -80,6 +84,31 @@ def test_a_recording_made_of_a_log_is_the_same(tmp_path):
     assert read(direct / "trial-1.rrd") == read(tmp_path / "trial-1.rrd")
     verified = rerun_command("rrd", "verify", direct / "trial-1.rrd")
     assert verified.returncode == 0, verified.stderr
+
+
+def views_of(part):
+    if isinstance(part, rrb.View):
+        return [part]
+    return [view for each in part.contents for view in views_of(each)]
+
+
+def test_no_curve_is_laid_out_that_would_be_empty():
+    run, _, evolved = example_memetic(1)[:3]
+    evolution = evolved.evolution
+    population = evolution.population
+    flat = population._replace(gains=np.zeros_like(population.gains))
+    alone = evolution._replace(best=evolution.best[:1], mean=evolution.mean[:1])
+    for told, expected in (
+        (evolution, ["fitness", "gained"]),
+        (evolution._replace(population=flat), ["fitness"]),
+        (alone, []),
+        (alone._replace(population=None), []),
+        (evolution._replace(population=None), ["fitness", "obstacles"]),
+    ):
+        views = views_of(scene._blueprint(run, [replace(evolved, evolution=told)]).root_container)
+        curves = [view.origin for view in views if isinstance(view, rrb.TimeSeriesView)]
+        assert curves == expected
+        assert type(views[0]) is rrb.Spatial2DView
 
 
 def test_individuals_have_a_colour_each_and_the_best_one_stands_out(tmp_path):

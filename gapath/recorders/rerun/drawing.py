@@ -18,10 +18,14 @@ from gapath.store.settings import text_of
 
 Color = tuple[int, int, int]
 
+_FEW = 50
+"""Points of a curve up to which they are large."""
+
 # Colours of Okabe and Ito, told apart with any colour vision, over a map in greys.
 OPTIMAL = (86, 180, 233)
 ORANGE = (230, 159, 0)
 PURPLE = (204, 121, 167)
+DARK_PURPLE = (130, 65, 130)
 VERMILLION = (213, 94, 0)
 GREEN = (0, 220, 130)
 GREY = (150, 150, 150)
@@ -103,10 +107,12 @@ def send_curve(
     values: NDArray[np.float64],
     name: str,
     color: Color,
+    width: float = 1.5,
 ) -> None:
     """Send a curve, a point at each time too: a single value has no line."""
-    stream.log(entity, rr.SeriesLines(colors=[color], names=[name], widths=[1.5]), static=True)
-    marks = rr.SeriesPoints(colors=[color], names=[name], marker_sizes=[2])
+    stream.log(entity, rr.SeriesLines(colors=[color], names=[name], widths=[width]), static=True)
+    size = width + (0.5 if len(values) > _FEW else 2.5)
+    marks = rr.SeriesPoints(colors=[color], names=[name], marker_sizes=[size])
     stream.log(entity, marks, static=True)
     stream.send_columns(entity, time, rr.Scalars.columns(scalars=values))
 
@@ -163,8 +169,9 @@ def blueprint(
     view: rrb.View | rrb.Container, panels: list[rrb.View], timeline: str
 ) -> rrb.Blueprint:
     """Lay the views out, panels on the right; paused, so that nothing is missed."""
+    shares = [2, *[1] * (len(panels) - 1)]  # the text is the longest
     return rrb.Blueprint(
-        rrb.Horizontal(view, rrb.Vertical(*panels), column_shares=[3, 1]),
+        rrb.Horizontal(view, rrb.Vertical(*panels, row_shares=shares), column_shares=[3, 1]),
         rrb.TimePanel(timeline=timeline, play_state="paused", fps=5, state="collapsed"),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),

@@ -44,7 +44,7 @@ def text(
     }
     legend = (
         "- **yellow**: the robot, its trail, its field of view\n"
-        "- **orange**: its current path\n"
+        "- **orange**: its current path, as far as it knows it to be free\n"
         "- **wide purple**: its way back\n"
         "- **in the step of a call**, thick if adopted: a planner's path in part "
         "A (purple), B (green), C (vermillion)\n"

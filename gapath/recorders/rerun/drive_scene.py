@@ -6,6 +6,7 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
+from gapath.driving.followed import Followed, followed
 from gapath.events import (
     Called,
     DriveFinished,
@@ -23,6 +24,7 @@ from gapath.kernels.units import OBSTACLE, SCALE
 from gapath.problem import Answer
 from gapath.querying.told import posed_in
 from gapath.recorders.rerun.drawing import (
+    DARK_PURPLE,
     GREEN,
     GREY,
     ORANGE,
@@ -45,9 +47,6 @@ TIMELINE = "step"
 # A mode has the colour of the part of KG18's step function that belongs to it.
 _PARTS = {"A": PURPLE, "B": GREEN, "C": VERMILLION}
 _MODES = {Mode.EXPLORE: GREEN, Mode.REPLAN: VERMILLION, Mode.RETURN: PURPLE}
-
-WAY_BACK = (130, 65, 130)
-"""A darker purple: the robot's trail and A's paths lie over it."""
 
 _PICTURES = 1 << 24
 """Bytes of all pictures of the known map: one a step where they fit, else one every few."""
@@ -100,11 +99,12 @@ def recording(run: RunStarted, events: list[Event]) -> bytes:
     log_problem(stream, posed_in(run, events), 2)
     _send_known_map(stream, drive)
     _send_robot(stream, drive, able.sensor_range)
-    _send_paths(stream, drive)
+    kept = followed(run.problem, events)
+    _send_paths(stream, drive, kept)
     _send_calls(stream, drive)
     _send_modes(stream, drive)
     time = [rr.TimeColumn(TIMELINE, sequence=drive.time(steps))]
-    left = _cost_left(run, events, able.unknown_weight)
+    left = np.array([each.left for each in kept])
     send_curve(stream, "cost/left", time, left, "cost left", ORANGE)
     if timed:
         seconds = np.array([step.seconds for step in steps])
@@ -194,15 +194,15 @@ def _outline(layers: int, x: float, y: float) -> NDArray[np.float32]:
     return np.array([(x * u - y * v, y * u + x * v) for u, v in corners], dtype=np.float32)
 
 
-def _send_paths(stream: rr.RecordingStream, drive: _Drive) -> None:
-    """Send the current path and the way back as they are when they change."""
-    paths = [event.path for event in drive.changes]
-    pasts = [event.past for event in drive.changes]
-    steps = drive.time(drive.changes)
+def _send_paths(stream: rr.RecordingStream, drive: _Drive, kept: list[Followed]) -> None:
+    """Send the current path when it changes or is cut, and the way back when it changes."""
+    changed = drive.time(drive.changes)
+    now = np.union1d(changed, [i for i, each in enumerate(kept) if each.cut]).astype(np.int64)
     stream.log("map/current_path", line(ORANGE, 3, draw_order=25), static=True)
-    _send_strips(stream, "map/current_path", steps, [[path] for path in paths])
-    stream.log("map/past_path", line(WAY_BACK, 7, draw_order=22), static=True)
-    _send_strips(stream, "map/past_path", steps, [[path] for path in pasts])
+    _send_strips(stream, "map/current_path", now, [[kept[i].path] for i in now])
+    stream.log("map/past_path", line(DARK_PURPLE, 7, draw_order=22), static=True)
+    pasts = [[event.past] for event in drive.changes]
+    _send_strips(stream, "map/past_path", changed, pasts)
 
 
 def _send_strips(
@@ -236,19 +236,41 @@ def _send_calls(stream: rr.RecordingStream, drive: _Drive) -> None:
                 strips = [answers[step] for step in steps]
                 _send_strips(stream, entity, np.array(steps), strips)
     if drive.calls:
-        texts = [
-            f"{call.part}{call.index} {_told(call.answer)}{', adopted' if call.adopted else ''}"
-            for call in drive.calls
-        ]
-        levels = ["INFO" if call.adopted else "DEBUG" for call in drive.calls]
-        time = [rr.TimeColumn(TIMELINE, sequence=drive.time(drive.calls))]
+        rows = _listed(drive)
+        time = [rr.TimeColumn(TIMELINE, sequence=[row.step for row in rows])]
+        texts = [f"{row.text}, {row.times} steps in a row" if row.times > 1 else row.text
+                 for row in rows]  # fmt: skip
+        levels = ["INFO" if row.adopted else "DEBUG" for row in rows]
         stream.send_columns("calls", time, rr.TextLog.columns(text=texts, level=levels))
 
 
+class _Row(NamedTuple):
+    """A call as the list has it, and in how many steps in a row there was the same."""
+
+    step: int
+    text: str
+    adopted: bool
+    times: int
+
+
+def _listed(drive: _Drive) -> list[_Row]:
+    """List the calls: one that comes again step by step, as along a wall, once."""
+    rows: list[_Row] = []
+    for call, step in zip(drive.calls, drive.time(drive.calls).tolist(), strict=True):
+        text = f"{call.part}{call.index} {_told(call.answer)}{', adopted' if call.adopted else ''}"
+        last = rows[-1] if rows else None
+        if last and (last.text, last.step + last.times) == (text, step):
+            rows[-1] = last._replace(times=last.times + 1)
+        else:
+            rows.append(_Row(step, text, call.adopted, 1))
+    return rows
+
+
 def _told(answer: Answer) -> str:
-    effort = f"{answer.epochs} epochs" if answer.epochs else f"{answer.expansions} fields"
-    status = answer.status.name.lower().replace("_", " ")
-    return f"{status}: {answer.cost:g} {'in' if answer.epochs else 'from'} {effort}"
+    told = f"{answer.status.name.lower().replace('_', ' ')}: {answer.cost:g}"
+    if answer.epochs:
+        return f"{told} in {answer.epochs} epochs"
+    return f"{told} from {answer.expansions} fields" if answer.expansions else told
 
 
 def _send_modes(stream: rr.RecordingStream, drive: _Drive) -> None:
@@ -263,25 +285,3 @@ def _send_modes(stream: rr.RecordingStream, drive: _Drive) -> None:
     names = [Mode(modes[i]).name.lower() for i in changed]
     time = [rr.TimeColumn(TIMELINE, sequence=drive.time(drive.steps)[changed])]
     stream.send_columns("mode", time, rr.StateChange.columns(state=names))
-
-
-def _cost_left(run: RunStarted, events: list[Event], unknown: float) -> NDArray[np.float64]:
-    """Give KG18 eq. (5) of what is left of the current path after each step.
-
-    NaN where there is no path, and where the robot knows of an obstacle on it.
-    """
-    grid = run.problem.map
-    known = np.full(grid.weights.shape, unknown)
-    for x, y in (run.problem.start, run.problem.target):
-        known[y, x] = grid.weights[y, x]
-    path, left = np.empty((0, 2), dtype=np.int32), []
-    for event in events:
-        if isinstance(event, PathsChanged):
-            path = event.path
-        elif isinstance(event, Stepped):
-            weights = np.where(event.entries < OBSTACLE, event.entries / SCALE, np.nan)
-            known[event.fields[:, 1], event.fields[:, 0]] = weights
-            if len(path) > 1 and tuple(path[1]) == event.place:
-                path = path[1:]
-            left.append(known[path[:, 1], path[:, 0]].sum() if len(path) else np.nan)
-    return np.array(left)

@@ -6,6 +6,7 @@ import rerun.blueprint as rrb
 
 from gapath.history.evolution import Population
 from gapath.recorders.rerun.drawing import (
+    DARK_PURPLE,
     PURPLE,
     VERMILLION,
     YELLOW,
@@ -28,7 +29,8 @@ _COLORS: tuple[Color, ...] = (
 """Of individuals and of operators, in turn."""
 
 LEGEND = (
-    "- **thin lines**: the other individuals, a colour each\n- **thin white**: the first path\n"
+    "- **thin lines**: the other individuals, a colour each\n"
+    "- **wide dark purple**: the first path, made short\n"
 )
 """What the colours mean, in Markdown."""
 
@@ -55,7 +57,7 @@ def log_population(
     def time(moments: object) -> list[rr.TimeColumn]:
         return [rr.TimeColumn(timeline, sequence=first_epoch - 1 + np.asarray(moments))]
 
-    stream.log("map/first_path", line((255, 255, 255), 1, draw_order=21), static=True)
+    stream.log("map/first_path", line(DARK_PURPLE, 10, draw_order=19), static=True)
     first = rr.LineStrips2D.from_fields(strips=[centres(population.polygon(0))])
     stream.log("map/first_path", first, static=True)
     standing = population.standing(epochs)
@@ -95,12 +97,14 @@ def share_rows(population: Population) -> dict[str, object]:
     """Give what a table says of what found the path, label -> value."""
     (first, cost), *others = zip(population.names, population.shares, strict=True)
     lowered = {f"lowered by {name}": f"{share:.10g}" for name, share in others if share}
-    return {f"cost of the first path, {first}": f"{cost:.10g}", **lowered}
+    return {f"first path, {first}": f"{cost:.10g}", **lowered}
 
 
-def gains_view() -> rrb.View:
-    """Show what each operator gained so far, over all individuals."""
-    return rrb.TimeSeriesView(origin="gained", name="Cost lowered so far, all individuals")
+def gains_views(population: Population) -> list[rrb.View]:
+    """Show what each operator gained so far, over all individuals; nothing if none did."""
+    if not population.gains.any():
+        return []
+    return [rrb.TimeSeriesView(origin="gained", name="Cost lowered so far, all individuals")]
 
 
 def changes_view() -> rrb.View:

@@ -40,7 +40,7 @@ from gapath.recorders.rerun.drawing import (
 from gapath.recorders.rerun.population_scene import (
     LEGEND,
     changes_view,
-    gains_view,
+    gains_views,
     log_population,
     share_rows,
 )
@@ -131,7 +131,8 @@ def _log_evolution(
         with np.errstate(divide="ignore", invalid="ignore"):
             best, mean = np.log10(best), np.log10(mean)
     send_curve(stream, "fitness/mean", time, mean, "mean of the population", GREY)
-    send_curve(stream, "fitness/best", time, best, "best", ORANGE)
+    # Wider, since the other one lies over it.
+    send_curve(stream, "fitness/best", time, best, "best", ORANGE, 3)
     obstacles = np.array([_obstacle_fields(grid, path) for path in paths], dtype=np.float64)
     send_curve(stream, "obstacles/best", time, obstacles, "obstacle fields", ORANGE)
     # A line at 0, so that the axis starts there.
@@ -241,7 +242,7 @@ def _number(value: float) -> str:
 
 
 def _blueprint(run: RunStarted, evolutions: list[Evolved]) -> rrb.Blueprint:
-    """Lay the views out: a large map above two curves, text on the right."""
+    """Lay the views out: a large map, above curves if there are any, text on the right."""
     view: rrb.View | rrb.Container = map_view(run.problem.map)
     panels: list[rrb.View] = [rrb.TextDocumentView(origin="text", name="Settings and result")]
     if evolutions:
@@ -250,19 +251,19 @@ def _blueprint(run: RunStarted, evolutions: list[Evolved]) -> rrb.Blueprint:
         cost = "log10 of the cost, obstacles as VLN" if _over_many_sizes(evolution) else "Cost"
         what = "Length of the path" if by_length else cost
         plain = rrb.PlotLegend(visible=False)  # it would hide the best or the worst
-        beside: rrb.View = rrb.TimeSeriesView(
-            origin="obstacles", name="Obstacle fields on the best path", plot_legend=plain
-        )
-        if evolution.population:
-            beside = gains_view()
-            panels.append(changes_view())
-        curves = rrb.Horizontal(
+        curves: list[rrb.View] = [
             rrb.TimeSeriesView(
                 origin="fitness",
                 name=f"{what}: best (orange), mean (grey)",
                 plot_legend=plain,
-            ),
-            beside,
-        )
-        view = rrb.Vertical(view, curves, row_shares=[2, 1])
+            )
+        ]
+        if evolution.population:
+            curves += gains_views(evolution.population)
+            panels.append(changes_view())
+        else:
+            name = "Obstacle fields on the best path"
+            curves.append(rrb.TimeSeriesView(origin="obstacles", name=name, plot_legend=plain))
+        if len(evolution.best) > 1:  # of a single epoch the text says all
+            view = rrb.Vertical(view, rrb.Horizontal(*curves), row_shares=[2, 1])
     return blueprint(view, panels, TIMELINE)
