@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.ticker import FixedLocator, StrMethodFormatter
 
-from gapath.pipelines.field.problems import asked, summarised
+from gapath.pipelines.field.problems import FIELD, asked, named, summarised
 from gapath.pipelines.numbers.text import number, percent
 from gapath.pipelines.page.figures import legend, looks, panels, render, style
 from gapath.pipelines.page.section import Figure, Section
@@ -15,7 +15,7 @@ from gapath.pipelines.papers.names import label
 from gapath.store.records import RunRecord
 
 TASK = "scenario"
-EXPERIMENT = "field"
+EXPERIMENT = FIELD
 ORDER = 98
 
 _TICKS = tuple(4 * 8**power for power in range(7))
@@ -47,8 +47,9 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
     if known.empty:
         return None
     rows = summarised(known, ["family", "length_from", "length_to"])
-    figures = [_figure(name, mine) for name, mine in rows.groupby("family", sort=True)]
-    return Section(title="Success, cost and time over length", figures=tuple(figures))
+    title, file = named(trials, "Success, cost and time over length", "lengths")
+    figures = [_figure(file, *each) for each in rows.groupby("family", sort=True)]
+    return Section(title=title, figures=tuple(figures))
 
 
 def _middle(rows: pd.DataFrame) -> pd.Series:
@@ -56,7 +57,7 @@ def _middle(rows: pd.DataFrame) -> pd.Series:
     return np.sqrt(np.maximum(rows["length_from"], 2) * rows["length_to"])
 
 
-def _figure(family: str, rows: pd.DataFrame) -> Figure:
+def _figure(file: str, family: str, rows: pd.DataFrame) -> Figure:
     look = looks(rows["method"])
     limits = _middle(rows).min() / 1.3, _middle(rows).max() * 1.3
     with style():
@@ -81,7 +82,7 @@ def _figure(family: str, rows: pd.DataFrame) -> Figure:
     found = (rows["success"] * rows["n"]).groupby(rows["method"], sort=False).sum()
     source = " (Sturtevant 2012)" if family == "MovingAI" else ""
     return Figure(
-        f"field_lengths_{re.sub('[^a-z0-9]+', '_', family.lower()).strip('_')}",
+        f"{file}_{re.sub('[^a-z0-9]+', '_', family.lower()).strip('_')}",
         f"Maps: {family}{source}. Problems by the length of their shortest path, bands each twice "
         "as wide as the one before. Found: of all trials on problems with a way. Time: of the "
         "planner's call, failures included. Cost: of paths found, those of a planner that finds "

@@ -24,6 +24,9 @@ FAMILIES = {
 }
 """By the maps' source, what they are called."""
 
+FIELD = "field"
+"""The experiment of this room."""
+
 SIZED = "generated"
 """The source of maps of any size, of which each is a family of its own."""
 
@@ -77,6 +80,14 @@ def asked(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> pd.DataFrame:
         length_to=BUCKET * end,
     )
     return table[np.isfinite(least)]
+
+
+def named(trials: pd.DataFrame, title: str, file: str) -> tuple[str, str]:
+    """Give a title and the beginning of files' names that no other experiment has."""
+    experiment = trials["experiment"].iloc[0]
+    if experiment == FIELD:
+        return title, f"field_{file}"
+    return f"{title}: {experiment}", f"field_{experiment}_{file}"
 
 
 def without_a_way(trials: pd.DataFrame) -> str:

@@ -4,7 +4,14 @@ from collections.abc import Sequence
 
 import pandas as pd
 
-from gapath.pipelines.field.problems import asked, cells, summarised, without_a_way
+from gapath.pipelines.field.problems import (
+    FIELD,
+    asked,
+    cells,
+    named,
+    summarised,
+    without_a_way,
+)
 from gapath.pipelines.numbers.behind import keys_behind
 from gapath.pipelines.numbers.text import number
 from gapath.pipelines.page.section import Section, Table
@@ -12,7 +19,7 @@ from gapath.pipelines.papers.names import label
 from gapath.store.records import RunRecord
 
 TASK = "scenario"
-EXPERIMENT = "field"
+EXPERIMENT = FIELD
 ORDER = 97
 
 
@@ -34,14 +41,15 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
     known = asked(trials, runs)
     if known.empty:
         return None
+    title, name = named(trials, "Many problems on a map, by length", "lengths")
     return Section(
-        title="Many problems on a map, by length",
+        title=title,
         text=(
             "Whole scenarios, every problem once or several times: MovingAI's benchmarks "
             "(Sturtevant 2012, maps and scenarios ODC-BY) as their files list them, other maps "
             "with problems drawn from all pairs of fields that a path joins.",
         ),
-        tables=(_table(known),),
+        tables=(_table(known, name),),
         remarks=(
             f"{without_a_way(trials)} A trial without a path is a failure, and its time counts.",
             "The interval counts problems as if they were drawn by lot; those on one map are "
@@ -52,7 +60,7 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
     )
 
 
-def _table(trials: pd.DataFrame) -> Table:
+def _table(trials: pd.DataFrame, name: str) -> Table:
     by = ["family", "length_from", "length_to"]
     rows = summarised(trials, by)
     shown = [
@@ -65,7 +73,7 @@ def _table(trials: pd.DataFrame) -> Table:
         for row in rows.to_dict("records")
     ]
     return Table(
-        "field_lengths",
+        name,
         "By the length of the shortest path, in fields, as MovingAI's buckets have it (for drawn "
         "problems that of the cheapest path): found, of problems with a way, with the 95 % Wilson "
         "interval over trials; cost (KG18 eq. (5)) over the least, of paths found: mean, median, "

@@ -4,13 +4,13 @@ from collections.abc import Sequence
 
 import pandas as pd
 
-from gapath.pipelines.field.problems import Column, asked, cells, summarised
+from gapath.pipelines.field.problems import FIELD, Column, asked, cells, named, summarised
 from gapath.pipelines.page.section import Section, Table
 from gapath.pipelines.papers.names import label
 from gapath.store.records import RunRecord
 
 TASK = "scenario"
-EXPERIMENT = "field"
+EXPERIMENT = FIELD
 ORDER = 99
 
 _LIKE = (
@@ -51,8 +51,9 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
         }
         for row in rows.to_dict("records")
     ]
+    title, name = named(trials, "Many problems on a map, map by map", "maps")
     table = Table(
-        "field_maps",
+        name,
         "Map by map, as in the table by length; MovingAI's: Sturtevant 2012. What the paths are "
         "like, medians of those found: octile length over the published one; angle over length, "
         "the turns of a path's straight lines over their length (of its steps, where it is not "
@@ -62,4 +63,4 @@ def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> Section | None:
         pd.DataFrame(shown),
         heads=3,
     ).with_runs(known, [*by, "method"])
-    return Section(title="Many problems on a map, map by map", tables=(table,))
+    return Section(title=title, tables=(table,))

@@ -103,9 +103,14 @@ def test_where_no_problem_has_a_way_there_is_nothing_to_show(runs):
         assert module.section(none, used) is None
 
 
-def test_the_report_has_them(runs, tmp_path):
+def test_the_report_has_them_of_a_scenario_of_ones_own_too(gapath, runs, tmp_path):
+    mine = ("task=scenario", "name=mine", "recorder=none", "planner=astar", "map=movingai")
+    assert gapath(*mine, "map.path=m.map", "map.scenario=m.map.scen")[0] == 0
     made, _ = make_report(runs, tmp_path / "report")
     names = {path.name for path in made}
-    assert {"field_lengths.csv", "field_maps.csv", "field_lengths_movingai.png"} <= names
+    for experiment in ("field", "field_mine"):
+        own = {"lengths.csv", "maps.csv", "lengths_movingai.png"}
+        assert {f"{experiment}_{name}" for name in own} <= names
     page = (tmp_path / "report" / "index.html").read_text()
-    assert "Many problems on a map, by length" in page
+    for title in ("Many problems on a map, by length", "Many problems on a map, map by map"):
+        assert f"{title}</h" in page and f"{title}: mine</h" in page
