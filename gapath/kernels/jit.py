@@ -140,6 +140,13 @@ class _Cache(caching.FunctionCache):  # type: ignore[misc]
         stamp = self._impl.locator.get_source_stamp()
         self._cache_file = _Files(self.cache_path, self._impl.filename_base, stamp)
 
+    def load_overload(self, signature: object, context: object) -> Any:
+        """Give what was compiled before; None if it has to be now, which takes its time."""
+        found = super().load_overload(signature, context)
+        if found is None:
+            _tell()
+        return found
+
     def save_overload(self, signature: object, result: object) -> None:
         """Save what was compiled, if that can be: it is there to be used anyway."""
         with suppress(OSError):
@@ -155,6 +162,14 @@ def _call_template(template: Callable[..., Any], args: Iterable[Any], kws: Any) 
     return template(
         tuple(map(types.unliteral, args)), {k: types.unliteral(v) for k, v in kws.items()}
     )
+
+
+@cache
+def _tell() -> None:
+    """Tell who sits at a terminal, once, what there is to wait for."""
+    if sys.stderr and sys.stderr.isatty():  # a bar that stands there is drawn again below
+        told = "\r\x1b[Kgapath: compiling kernels, up to a minute; they are kept for the next time"
+        print(told, file=sys.stderr, flush=True)
 
 
 JIT: bool = not numba.config.DISABLE_JIT  # type: ignore[attr-defined]

@@ -34,7 +34,7 @@ for argument in {}:
 """
 
 
-def call(folder, prefix="", arguments=(1,), before=None):
+def call(folder, prefix="", arguments=(1,), before=None, stderr=subprocess.PIPE):
     """Call `outer` in a process of its own, each time read anew from the files.
 
     Gives its results, each with how many caches served it.
@@ -43,7 +43,8 @@ def call(folder, prefix="", arguments=(1,), before=None):
         [sys.executable, "-c", CALLS.format(arguments, prefix, prefix, prefix)],
         env=os.environ | {"NUMBA_CACHE_DIR": str(folder / "cache")},
         cwd=folder,
-        capture_output=True,
+        stdout=subprocess.PIPE,
+        stderr=stderr,
         text=True,
         preexec_fn=before,
     )
@@ -71,6 +72,22 @@ def kept(tmp_path_factory):
     folder = write_kernels(tmp_path_factory.mktemp("kept"))
     assert call(folder) == [["4", "0"]]
     return folder
+
+
+def test_who_waits_at_a_terminal_is_told_once(kernels):
+    for kept in (0, 1):
+        ours, terminal = os.openpty()
+        try:
+            assert call(kernels, stderr=terminal) == [["4", str(kept)]]
+            os.write(terminal, b"end\n")  # or there would be nothing to read
+            text = b""
+            while not text.endswith(b"end\r\n"):
+                text += os.read(ours, 4096)
+        finally:
+            os.close(ours)
+            os.close(terminal)
+        line = b"gapath: compiling kernels, up to a minute; they are kept for the next time\r\n"
+        assert text == (b"" if kept else b"\r\x1b[K" + line) + b"end\r\n"
 
 
 @pytest.mark.parametrize("package", ["", "plugin"])
