@@ -1,5 +1,6 @@
 """Bad input: the one exception that says so, and the checks that raise it."""
 
+import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -10,11 +11,47 @@ FAULTS = (Exception, SystemExit)
 """What is a component's fault where it raises it: it must not end the process by itself, either."""
 
 
+_UNSEEN = re.compile(
+    "[\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufeff]"
+)
+"""Control characters, ends of lines, marks that turn the direction of writing, halves of pairs."""
+
+_ENDS = re.compile(r"\s*\n\s*")
+
+_MOST_SHOWN = 400
+"""Characters of a name or a value that a message shows."""
+
+
+def printable(text: object) -> str:
+    r"""Write text of others such that it is seen as it is, and does nothing else.
+
+    A terminal obeys what stands between control characters, and marks of direction let text read
+    as another.
+
+    Parameters
+    ----------
+    text : object
+        A name from a file, a path; its ``str``.
+
+    Returns
+    -------
+    str
+        One line: control characters as ``\x1b``, ends of lines, marks of direction and lone
+        surrogates, which cannot be written at all, as ``\u202e``.
+    """
+    return _UNSEEN.sub(_written, str(text))
+
+
+def _written(found: re.Match[str]) -> str:
+    code = ord(found[0])
+    return f"\\x{code:02x}" if code < 256 else f"\\u{code:04x}"
+
+
 class InputError(ValueError):
     """A file, a field or a value that a user gave cannot be used.
 
-    The message names the file or the field, the value, and what would be right.
-    Commands print it without a traceback and exit with code 2.
+    The message names the file or the field, the value, and what would be right, in one `printable`
+    line. Commands print it without a traceback and exit with code 2.
 
     Parameters
     ----------
@@ -28,10 +65,18 @@ class InputError(ValueError):
 
     def __init__(self, where: object, value: object, expected: str) -> None:
         self.where, self.value, self.expected = str(where), value, expected
-        super().__init__(f"{where}: got {str(value) or repr('')}, expected {expected}")
+        found = _shown(value) or repr("")
+        right = printable(_ENDS.sub(" ", expected))
+        super().__init__(f"{_shown(where)}: got {found}, expected {right}")
 
     def __reduce__(self) -> tuple[type["InputError"], tuple[str, object, str]]:
         return type(self), (self.where, self.value, self.expected)
+
+
+def _shown(value: object) -> str:
+    text = _ENDS.sub(" ", str(value))
+    rest = len(text) - _MOST_SHOWN
+    return printable(text if rest <= 0 else f"{text[:_MOST_SHOWN]}... ({rest} characters more)")
 
 
 def require(condition: bool, where: object, value: object, expected: str) -> None:

@@ -8,7 +8,7 @@ from tabulate import tabulate
 
 import gapath
 from gapath.api import load_map
-from gapath.errors import InputError, require
+from gapath.errors import InputError, printable, require
 from gapath.grid import Field, GridMap
 from gapath.kernels.s04.genotype import MAX_SIDE, SWITCHES
 from gapath.planning.shortest_path import shortest_path
@@ -91,7 +91,7 @@ def _row(grid: GridMap, start: Field | None, target: Field | None) -> dict[str, 
         return "yes" if yes else "no"
 
     return {
-        "map": grid.name,
+        "map": printable(grid.name),
         "fields": f"{grid.cols} x {grid.rows}",
         "from": f"{start[0]},{start[1]}",
         "to": f"{target[0]},{target[1]}",

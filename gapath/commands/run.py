@@ -23,7 +23,7 @@ from omegaconf import DictConfig, OmegaConf
 import gapath
 from gapath.commands.refusal import BAD_CONFIGURATION, arguments, explain
 from gapath.discovery import component_of, conf_packages, kinds, yaml_names
-from gapath.errors import FAULTS, InputError, require
+from gapath.errors import FAULTS, InputError, printable, require
 from gapath.running.config import HOW, Run, conf_folder, make_run
 from gapath.running.experiment import Execution, execute, run_folder
 from gapath.store.runfolder import RunFolder
@@ -191,7 +191,7 @@ def refuse(error: BaseException, words: Sequence[str], sweep: bool) -> int:
         where = f"{Path(last.filename).name}, line {last.lineno}"
         what = " ".join(f"{type(error).__name__}: {error}".split())
         line = "; ".join([f"{component_of(error)}: {what} ({where})".lstrip(": "), *notes])
-    print(f"gapath: {line}", file=sys.stderr, flush=True)
+    print(f"gapath: {printable(line)}", file=sys.stderr, flush=True)
     return code
 
 
@@ -214,14 +214,15 @@ def describe(run: Run, execution: Execution, short: bool) -> str:
     """
     grid = run.problem.map
     instance = f"#{grid.instance}" if grid.instance else ""
-    what = f"{grid.name}{instance} {run.method.name}"
+    what = printable(f"{grid.name}{instance} {run.method.name}")
+    folder = printable(execution.folder)
     if execution.state is RunState.SKIPPED:
-        return f"{what}: skipped, {execution.folder} is whole (force=true runs it again)"
+        return f"{what}: skipped, {folder} is whole (force=true runs it again)"
     if execution.state is RunState.BUSY:
-        return f"{what}: skipped, another process is working on {execution.folder}"
+        return f"{what}: skipped, another process is working on {folder}"
     rows = execution.rows
     if short:
-        return f"{what}: {run.task.line(rows)}, {execution.folder}"
+        return f"{what}: {printable(run.task.line(rows))}, {folder}"
     marked = f" ({grid.source})" if grid.source == "reconstructed" else ""
     lines: dict[str, object] = {
         "map": f"{grid.name}{instance}{marked}, {grid.cols} x {grid.rows} fields"
@@ -235,8 +236,8 @@ def describe(run: Run, execution: Execution, short: bool) -> str:
         )
     lines[run.task.groups[0]] = run.method.name
     lines |= run.task.summary(rows)
-    table = "\n".join(f"{name:<14}{value}" for name, value in lines.items())
-    files = "\n".join(f"  {execution.folder / name}" for name in execution.files)
+    table = "\n".join(f"{name:<14}{printable(value)}" for name, value in lines.items())
+    files = "\n".join(f"  {printable(execution.folder / name)}" for name in execution.files)
     return f"{table}\n\nfiles\n{files}"
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import yaml
 
 from gapath.discovery import component_of
-from gapath.errors import InputError
+from gapath.errors import InputError, printable
 from gapath.events import Event, RunFinished, RunStarted
 from gapath.planning.acceleration import AUTO, with_kernels
 from gapath.problem import Plan
@@ -187,7 +187,7 @@ def _do_trials(
     batch = Batch(run.experiment, run.method.name, run.problem, run.seed, run.trials, run.threads)
     bar = tqdm(
         run.task.trials(batch, optimum),
-        desc=f"{run.problem.map.name} {run.method.name}",
+        desc=printable(f"{run.problem.map.name} {run.method.name}"),
         total=run.trials,
         unit="trial",
         leave=False,

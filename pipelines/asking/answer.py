@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, TextIO
 
 import pandas as pd
 
-from gapath.errors import require
+from gapath.errors import printable, require
 from gapath.pipelines.numbers.text import NOTHING, number
 
 _GAP = "  "
@@ -32,12 +32,14 @@ class Answer(NamedTuple):
 def write_csv(answer: Answer, file: TextIO) -> None:
     """Write every value with all its digits; an empty cell where there is none."""
     writer = csv.writer(file, lineterminator="\n")
-    writer.writerow(answer.names)
+    writer.writerow(map(printable, answer.names))
     writer.writerows(zip(*(map(_lower, column) for column in answer.columns), strict=True))
 
 
 def _lower(value: Any) -> Any:
-    return str(value).lower() if isinstance(value, bool) else value
+    if isinstance(value, bool):
+        return str(value).lower()
+    return printable(value) if isinstance(value, str) else value
 
 
 def write_json(answer: Answer, file: TextIO) -> None:
@@ -78,7 +80,7 @@ def write_text(
     importance : mapping of str to float
         Columns that may be left out, the least important first.
     """
-    heads = [name.split(".") if width else [name] for name in answer.names]
+    heads = [name.split(".") if width else [name] for name in map(printable, answer.names)]
     heads = [[f"{part}." for part in parts[:-1]] + parts[-1:] for parts in heads]
     high = max(map(len, heads))
     texts = [list(map(_text, column)) for column in answer.columns]
@@ -119,4 +121,4 @@ def _text(value: Any) -> str:
         return str(value).lower()
     if isinstance(value, float):
         return number(value)
-    return " ".join(str(value).split())
+    return printable(" ".join(str(value).split()))

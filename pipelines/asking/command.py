@@ -10,7 +10,7 @@ from typing import Any
 
 import pandas as pd
 
-from gapath.errors import require
+from gapath.errors import printable, require
 from gapath.pipelines.asking.answer import Answer, write_csv, write_json, write_text
 from gapath.pipelines.asking.groups import FIGURES, SPENT, grouped
 from gapath.pipelines.asking.listing import METRICS, importance, listed, short_keys
@@ -78,7 +78,7 @@ def main(arguments: Sequence[str]) -> None:
         places = _counting(frame, runs, places)
         answer, bad = asked(given.sql, frame.iloc[places], [runs[place] for place in places])
         for name in bad:
-            print(f"left out {name}: its trials cannot be read", file=sys.stderr)
+            _tell(f"left out {name}: its trials cannot be read")
         _write(given, answer)
     elif given.group is not None:
         by = _columns("--group", given.group, ["key", *frame])
@@ -88,7 +88,7 @@ def main(arguments: Sequence[str]) -> None:
     else:
         for place in places:
             if runs[place].fault or frame["fault"].notna().iloc[place]:
-                print(f"{runs[place].name}: {frame['fault'].iloc[place]}", file=sys.stderr)
+                _tell(f"{runs[place].name}: {frame['fault'].iloc[place]}")
         _list(given, frame.iloc[places], frame.index)
 
 
@@ -121,13 +121,17 @@ def _counting(frame: pd.DataFrame, runs: Sequence[RunRecord], places: Sequence[i
         places, *(frame[name].iloc[places] for name in ("fault", "superseded")), strict=True
     ):
         if pd.notna(fault):
-            print(f"left out {runs[place].name}: {fault}", file=sys.stderr)
+            _tell(f"left out {runs[place].name}: {fault}")
         elif pd.notna(newer):
             reason = f"{newer} counts, of the same setting"
-            print(f"left out {runs[place].name}: {reason}", file=sys.stderr)
+            _tell(f"left out {runs[place].name}: {reason}")
         else:
             kept.append(place)
     return kept
+
+
+def _tell(line: str) -> None:
+    print(printable(line), file=sys.stderr)
 
 
 def _list(given: argparse.Namespace, frame: pd.DataFrame, keys: Iterable[str]) -> None:

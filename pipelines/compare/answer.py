@@ -9,6 +9,7 @@ from typing import Any
 import pandas as pd
 from tabulate import tabulate
 
+from gapath.errors import printable
 from gapath.pipelines.compare.choice import Choice, choose
 from gapath.pipelines.compare.figures import figures
 from gapath.pipelines.compare.tables import (
@@ -93,12 +94,12 @@ class Answer:
             lines += ["", WORDINGS[quantity].title, *(f"  {each}" for each in found)]
         for comparison in self.comparisons:
             if comparison.pairs:
-                table = shown(comparison, self.by)
+                table = shown(comparison, self.by).map(printable)
                 text = tabulate(table.head(rows), headers="keys", showindex=False,
                                 disable_numparse=True)  # fmt: skip
                 more = f"\nand {len(table) - rows} more in the files" if len(table) > rows else ""
-                lines += ["", text + more]
-        return "\n".join([*lines, "", *self.remarks])
+                lines += ["", *(text + more).split("\n")]
+        return "\n".join(map(printable, [*lines, "", *self.remarks]))
 
     def files(self) -> list[tuple[str, bytes]]:
         """Give the name and content of each file."""

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from gapath.errors import InputError, one_of, require
+from gapath.errors import InputError, one_of, printable, require
 
 MEASURES = {
     "success": ("success",),
@@ -81,7 +81,7 @@ def run(arguments: Sequence[str]) -> None:
     except OSError as error:
         raise InputError(folder, error.strerror, "a folder that can be written") from error
     if not given.json:
-        print(f"{len(files)} files in {folder}; read {folder / PAGE}")
+        print(printable(f"{len(files)} files in {folder}; read {folder / PAGE}"))
 
 
 def _name_left_out(runs: Sequence[tuple[str, str]]) -> None:
@@ -91,7 +91,7 @@ def _name_left_out(runs: Sequence[tuple[str, str]]) -> None:
         by_reason.setdefault(reason, []).append(name)
     for reason, names in by_reason.items():
         more = f" and {len(names) - 1} more" if len(names) > 1 else ""
-        print(f"left out {names[0]}{more}: {reason}", file=sys.stderr)
+        print(printable(f"left out {names[0]}{more}: {reason}"), file=sys.stderr)
 
 
 def _write(folder: Path, files: Mapping[str, bytes]) -> None:

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import gapath
-from gapath.errors import InputError
+from gapath.errors import InputError, printable
 
 _EPILOG = """\
 commands:
@@ -94,6 +94,6 @@ def _report(outputs: Path, folder: Path) -> None:
 
     files, skipped = make_report(outputs, folder)
     for run, reason in skipped:
-        print(f"left out {run}: {reason}", file=sys.stderr)
-    print(f"{len(files)} files in {folder}")
-    print(f"open {files[-1].resolve()}")
+        print(printable(f"left out {run}: {reason}"), file=sys.stderr)
+    print(printable(f"{len(files)} files in {folder}"))
+    print(printable(f"open {files[-1].resolve()}"))
