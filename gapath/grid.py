@@ -8,7 +8,7 @@ import hashlib
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,7 +66,8 @@ class GridMap(Shown):
     name : str
         Short name, used in tables and file names.
     weights : (rows, cols) float64
-        Cost of passing each field: 0 preferred, 0.5 the usual base, 1 an obstacle.
+        Cost of passing each field: 0 preferred, 0.5 the usual base, 1 an obstacle. An array that
+        cannot be written any more is kept, of another a copy.
     start, target : (x, y), optional
         The fields that the map's author means a robot to go from and to.
     instance : int
@@ -106,7 +107,7 @@ class GridMap(Shown):
         try:
             given = np.asarray(self.weights)
             require(given.dtype.kind in "biuf", where, f"an array of {given.dtype}", "real numbers")
-            weights = np.array(given, dtype=np.float64, order="C")
+            weights = given if _is_final(given) else np.array(given, dtype=np.float64, order="C")
         except ValueError as error:  # rows of different lengths
             if isinstance(error, InputError):
                 raise
@@ -123,9 +124,8 @@ class GridMap(Shown):
             f"shape {weights.shape}",
             f"at most {MAX_FIELDS} fields, {MAX_SIDE} a side",
         )
-        wrong = ~((weights >= 0.0) & (weights <= 1.0))  # also true for NaN
-        if wrong.any():
-            y, x = np.argwhere(wrong)[0]
+        if not (weights.min() >= 0.0 and weights.max() <= 1.0):  # also where one is NaN
+            y, x = np.argwhere(~((weights >= 0.0) & (weights <= 1.0)))[0]
             raise InputError(
                 f"{where}, field ({x}, {y})", weights[y, x], "a finite weight in [0, 1]"
             )
@@ -200,7 +200,9 @@ class GridMap(Shown):
 
     @cached_property
     def _heaviest(self) -> list[tuple[int, int]]:  # obstacles come last here, too
-        return least_three(np.where(self.obstacles, self.table, -self.table).ravel())
+        table = -self.table
+        np.copyto(table, self.table, where=self.obstacles)
+        return least_three(table.ravel())
 
     def joined(self, start: Field, target: Field, rule: int) -> bool:
         """Tell whether a path joins two free fields (`parts`)."""
@@ -232,7 +234,10 @@ class GridMap(Shown):
     def digest(self) -> str:
         """SHA-256 of what a planner and a log see of the map: weights, shape, scale and place."""
         text = f"{self.rows} {self.cols} {self.resolution!r} {self.origin!r} "
-        return hashlib.sha256(text.encode() + self.weights.astype("<f8").tobytes()).hexdigest()
+        digest = hashlib.sha256(text.encode())
+        for row in self.weights:  # one at a time: as bytes the largest map takes a gigabyte
+            digest.update(row.astype("<f8", copy=False).data)
+        return digest.hexdigest()
 
     def contains(self, place: Field) -> bool:
         """Tell whether a field (x, y) lies on the map."""
@@ -290,6 +295,14 @@ class GridMap(Shown):
         offset = np.array([0.5, self.rows - 0.5]) * self.resolution
         corner = np.array(self.origin[:2] if self.origin[2] == 0.0 else (0.0, 0.0))
         return np.array([self.resolution, -self.resolution]), offset + corner
+
+
+def _is_final(given: NDArray[Any]) -> bool:
+    """Tell whether an array can be a map's weights as it is: nobody changes it."""
+    flags = given.flags
+    return (
+        given.dtype == np.float64 and flags.c_contiguous and flags.owndata and not flags.writeable
+    )
 
 
 def other_reading(grid: PlanningMap, obstacles: NDArray[np.bool_], places: list[Field]) -> str:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from gapath.errors import InputError, require
 from gapath.grid import MAX_FIELDS
-from gapath.mapio._input import read_bytes
+from gapath.mapio._input import ROWS, read_bytes
 
 PALETTE = 3
 PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
@@ -87,16 +87,17 @@ def read_grey(path: str | Path) -> NDArray[np.uint8]:
     """
     colours, alpha = read_pixels(path)
     require(alpha is None, path, "an image with an alpha channel", "one without")
-    grey = colours[:, :, 0]
-    coloured = (colours != colours[:, :, :1]).any(axis=2)
-    if coloured.any():
-        y, x = np.argwhere(coloured)[0]
-        raise InputError(
-            f"{path}, pixel ({x}, {y})",
-            f"RGB {colours[y, x].tolist()}",
-            "a shade of grey: equal red, green and blue",
-        )
-    return grey
+    for top in range(0, len(colours), ROWS):
+        some = colours[top : top + ROWS]
+        coloured = (some != some[:, :, :1]).any(axis=2)
+        if coloured.any():
+            y, x = np.argwhere(coloured)[0]
+            raise InputError(
+                f"{path}, pixel ({x}, {top + y})",
+                f"RGB {some[y, x].tolist()}",
+                "a shade of grey: equal red, green and blue",
+            )
+    return colours[:, :, 0]
 
 
 def _check_size(path: str | Path, cols: int, rows: int) -> None:
@@ -120,12 +121,12 @@ def _read_netpbm(path: str | Path, data: bytes) -> Channels:
     _check_size(path, cols, rows)
     _check_depth(path, largest.bit_length())
     require(largest == 255, path, f"largest value {largest}", "an image of values 0 to 255")
-    raster = data[header.end() :]
+    raster = memoryview(data)[header.end() :]
     shape = rows, cols, NETPBM_CHANNELS[header.group(1)]
     if header.group(1) in (b"P2", b"P3"):
-        raster = _values(path, raster)
+        raster = memoryview(_values(path, raster))
     # One newline more than the raster: some map savers end their file like a text.
-    if len(raster) == np.prod(shape) + 1 and raster.endswith(b"\n"):
+    if len(raster) == np.prod(shape) + 1 and raster[-1] == ord("\n"):
         raster = raster[:-1]
     require(
         len(raster) == np.prod(shape),
@@ -136,15 +137,26 @@ def _read_netpbm(path: str | Path, data: bytes) -> Channels:
     return np.frombuffer(raster, dtype=np.uint8).reshape(shape)
 
 
-def _values(path: str | Path, text: bytes) -> bytes:
+def _values(path: str | Path, text: bytes | memoryview) -> bytes:
     """Give the raster of numbers in text, a byte a number."""
-    text = re.sub(rb"#[^\r\n]*", b" ", text)
-    strange = re.search(rb"[^\d\s]+", text)
-    require(strange is None, path, repr(strange and strange[0][:20]), "numbers from 0 to 255")
-    values = np.fromstring(text.decode(), dtype=np.int64, sep=" ")
-    most = values.max(initial=0)
-    require(most <= 255, path, f"the value {most}", "numbers from 0 to 255")
-    return values.astype(np.uint8).tobytes()
+    if _COMMENT.search(text):
+        text = _COMMENT.sub(b" ", text)
+    found, begin = bytearray(), 0
+    while begin < len(text):  # a piece at a time: a number takes eight times the room of a byte
+        blank = _BLANK.search(text, begin + _PIECE)
+        end = blank.start() if blank else len(text)
+        piece, begin = bytes(text[begin:end]), end
+        strange = re.search(rb"[^\d\s]+", piece)
+        require(strange is None, path, repr(strange and strange[0][:20]), "numbers from 0 to 255")
+        values = np.fromstring(piece.decode(), dtype=np.int64, sep=" ")
+        most = values.max(initial=0)
+        require(most <= 255, path, f"the value {most}", "numbers from 0 to 255")
+        found += values.astype(np.uint8).tobytes()
+    return bytes(found)
+
+
+_COMMENT, _BLANK = re.compile(rb"#[^\r\n]*"), re.compile(rb"\s")
+_PIECE = 1 << 22
 
 
 def _read_png(path: str | Path, data: bytes) -> Channels:
@@ -184,16 +196,22 @@ def _read_png(path: str | Path, data: bytes) -> Channels:
         raise InputError(path, "a damaged or truncated PNG", "a whole PNG") from error
 
 
+_SLICE = 1 << 16
+
+
 def _check_png_raster(path: str | Path, data: bytes, rows: int, row_bytes: int) -> None:
     """Refuse image data of a wrong length, which Pillow fills up with black."""
-    compressed, place = [], len(PNG_SIGNATURE)
-    while place < len(data):
+    expected = rows * (1 + row_bytes)  # one byte before each row names its filter
+    inflating, found, place = zlib.decompressobj(), 0, len(PNG_SIGNATURE)
+    while place < len(data) and found <= expected:
         length, kind = struct.unpack(">I4s", data[place : place + 8])
-        if kind == b"IDAT":
-            compressed.append(data[place + 8 : place + 8 + length])
         if kind == b"IEND":
             break
-        place += length + 12
-    expected = rows * (1 + row_bytes)  # one byte before each row names its filter
-    found = len(zlib.decompressobj().decompress(b"".join(compressed), expected + 1))
+        begin, place = place + 8, place + length + 12
+        for at in range(begin, begin + length, _SLICE) if kind == b"IDAT" else ():
+            some = data[at : min(at + _SLICE, begin + length)]
+            while some and found <= expected and not inflating.eof:
+                found += len(inflating.decompress(some, _PIECE))
+                some = inflating.unconsumed_tail
+    found += len(inflating.flush())
     require(found == expected, path, "image data of a wrong length", f"{rows} rows of pixels")

@@ -12,7 +12,7 @@ import numpy as np
 
 from gapath.errors import Checks, require
 from gapath.grid import MAX_FIELDS, GridMap
-from gapath.mapio._input import as_field, read_text
+from gapath.mapio._input import as_field, final, read_text
 
 SUFFIXES: tuple[str, ...] = (".txt",)
 
@@ -69,7 +69,7 @@ class Reader:
         start, target = as_field("map.start", self.start), as_field("map.target", self.target)
         return GridMap(
             name=Path(self.path).stem,
-            weights=np.where(codes == ord("1"), 1.0, self.free_weight),
+            weights=final(np.where(codes == ord("1"), 1.0, self.free_weight)),
             start=start or (0, 0),
             target=target or (n - 1, n - 1),
             source="asciigrid",

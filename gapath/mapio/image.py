@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from gapath.grid import GridMap
-from gapath.mapio._input import as_field
+from gapath.mapio._input import as_field, final
 from gapath.mapio._pixels import read_grey
 
 SUFFIXES: tuple[str, ...] = (".png", ".ppm")
@@ -61,7 +61,7 @@ class Reader:
         grey = read_grey(self.path)
         return GridMap(
             name=Path(self.path).stem,
-            weights=(WEIGHTS[::-1] if self.invert else WEIGHTS)[grey],
+            weights=final((WEIGHTS[::-1] if self.invert else WEIGHTS)[grey]),
             start=as_field("map.start", self.start),
             target=as_field("map.target", self.target),
             source="image",

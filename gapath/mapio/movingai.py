@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from gapath.errors import Checks, InputError, require
 from gapath.grid import Field, GridMap
-from gapath.mapio._input import as_field, read_text
+from gapath.mapio._input import as_field, final, read_text
 from gapath.scenario.listed import Queries
 
 SUFFIXES: tuple[str, ...] = (".map",)
@@ -27,6 +27,8 @@ GROUND, WATER = ".GS", "W"
 """Ground, ground and swamp; water."""
 BLOCKED = "@OT"
 """Out of bounds, out of bounds and trees."""
+MAX_SCENARIO_BYTES = 1 << 24
+"""Bytes of the largest scenario, ten times those that there are; a row takes twenty of them."""
 HEADER = re.compile(r"type octile *\nheight +(\d{1,9}) *\nwidth +(\d{1,9}) *\nmap *\n", re.ASCII)
 
 
@@ -62,7 +64,7 @@ def read_scenario(path: str) -> list[ScenarioProblem]:
     InputError
         If the file cannot be read or a line is not of version 1 of the format.
     """
-    lines = read_text(path).rstrip().split("\n")
+    lines = read_text(path, MAX_SCENARIO_BYTES).rstrip().split("\n")
     require(
         re.fullmatch(r"version 1(\.0)?\s*", lines[0]) is not None,
         f"{path}, line 1",
@@ -147,7 +149,7 @@ class Reader:
                 published = problem.optimal_length
         return GridMap(
             name=Path(self.path).stem,
-            weights=np.where(_passable(codes, start), self.free_weight, 1.0),
+            weights=final(np.where(_passable(codes, start), self.free_weight, 1.0)),
             start=start,
             target=target,
             source="movingai",
@@ -244,14 +246,11 @@ def _read_codes(path: str) -> NDArray[np.uint8]:
             f"{len(line)} characters",
             f"{cols}, the header's width",
         )
-    text = "".join(lines)  # other characters than ASCII become "?", which is not known either
-    codes = np.frombuffer(text.encode("ascii", "replace"), dtype=np.uint8).reshape(rows, cols)
-    known = np.isin(codes, _numbers(GROUND + WATER + BLOCKED))
-    if not known.all():
-        y, x = np.argwhere(~known)[0]
-        raise InputError(
-            f"{path}, line {y + 5}, column {x + 1}",
-            repr(lines[y][x]),
-            f"one of {' '.join(GROUND)} (passable) {' '.join(BLOCKED)} (not) {WATER} (water)",
-        )
-    return codes
+        rest = line.lstrip(GROUND + WATER + BLOCKED)
+        if rest:
+            raise InputError(
+                f"{path}, line {number}, column {cols - len(rest) + 1}",
+                repr(rest[0]),
+                f"one of {' '.join(GROUND)} (passable) {' '.join(BLOCKED)} (not) {WATER} (water)",
+            )
+    return np.frombuffer("".join(lines).encode(), dtype=np.uint8).reshape(rows, cols)

@@ -23,20 +23,19 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 from numpy.typing import NDArray
 
 from gapath.errors import Checks, InputError, require
 from gapath.grid import GridMap
-from gapath.mapio._input import as_field, read_text
+from gapath.mapio._input import ROWS, as_field, final, read_text
 from gapath.mapio._pixels import Pixels, read_pixels
+from gapath.store.settings import MAX_YAML_BYTES, plain_yaml
 
 SUFFIXES: tuple[str, ...] = (".yaml", ".yml")
 
 MODES = ("trinary", "scale", "raw")
 OCCUPIED, UNKNOWN = 100.0, -1.0
 """Occupancies as in ``nav_msgs/OccupancyGrid``; 0 to 100 are per cents."""
-MAX_YAML_BYTES = 1 << 16
 
 Levels = NDArray[np.float64]
 """A value for each pair of brightness and alpha, (766, 256); a brightness is red, green and blue
@@ -123,7 +122,7 @@ class Reader:
         levels = self._weights(occupancy(description, pixels.alpha is not None))
         return GridMap(
             name=Path(self.path).stem,
-            weights=_look_up(levels, pixels),
+            weights=final(_look_up(levels, pixels)),
             start=as_field("map.start", self.start),
             target=as_field("map.target", self.target),
             source="rosmap",
@@ -143,9 +142,11 @@ class Reader:
 
 def _look_up(levels: Levels, pixels: Pixels) -> NDArray[np.float64]:
     channels = pixels.colours.shape[2]
-    brightness = pixels.colours.sum(axis=2, dtype=np.intp) * (3 // channels)
-    alpha = 255 if pixels.alpha is None else pixels.alpha
-    weights: NDArray[np.float64] = levels[brightness, alpha]
+    weights = np.empty(pixels.colours.shape[:2])
+    for top in range(0, len(weights), ROWS):
+        some = slice(top, top + ROWS)
+        brightness = pixels.colours[some].sum(axis=2, dtype=np.intp) * (3 // channels)
+        weights[some] = levels[brightness, 255 if pixels.alpha is None else pixels.alpha[some]]
     return weights
 
 
@@ -202,12 +203,7 @@ def read_description(path: str) -> Description:
     """
     is_image = Path(path).suffix.lower() in (".pgm", ".png", ".ppm")
     require(not is_image, path, "an image", "the map's YAML file, which names it")
-    text = read_text(path, MAX_YAML_BYTES)
-    try:
-        content = yaml.safe_load(text)
-    except (yaml.YAMLError, ValueError, OverflowError, RecursionError) as error:
-        reason = str(error).split("\n")[0]
-        raise InputError(path, f"text that is no YAML ({reason})", "a map_server YAML") from error
+    content = plain_yaml(read_text(path, MAX_YAML_BYTES), path, "a map_server YAML")
     require(isinstance(content, dict), path, _shown(content), "a map_server YAML: keys and values")
     needed = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
     for key in needed:
@@ -240,7 +236,7 @@ def read_description(path: str) -> Description:
 
 
 def _shown(value: Any) -> str:
-    # Aliases make a small YAML's value endless when printed: name the type alone.
+    # Of what may be long or nested, the type alone.
     return repr(value) if isinstance(value, str | int | float | None) else type(value).__name__
 
 

@@ -290,7 +290,7 @@ def read_problem(settings: Root, task: Task | None, maps: Mapping[str, GridMap])
     reader = build("map", settings.map, "map")
     grid: GridMap = reader.read()
     named = map_name(grid.name, settings.map)
-    if named != grid.name:  # to replace a name takes a copy of the map
+    if named != grid.name:
         grid = dataclasses.replace(grid, name=named)
     if isinstance(task, Posing):
         listed = reader.queries(grid) if isinstance(reader, Listing) else None

@@ -1,4 +1,4 @@
-"""A run's settings as data: flat, and as the text that a log keeps.
+"""A run's settings as data: flat, and as the text that a log keeps; and data of other YAMLs.
 
 A flat mapping has a value for each dotted name, lists are indexed: ``planner.population``,
 ``map.start[0]``, ``navigator.replan[1].control_points``. Empty lists and mappings have names
@@ -21,6 +21,12 @@ Flat: TypeAlias = Mapping[str, Value]
 _OF_LIST = re.compile(r"([^[]+)\[")
 _UNEVEN = re.compile(r"\[|\.$", re.MULTILINE)
 """In names of settings that are no columns' names: of lists, or of an empty mapping."""
+
+MAX_YAML_BYTES = 1 << 16
+"""Bytes of the largest YAML that is read; so many characters, too."""
+
+MOST_NODES, DEEPEST = 10_000, 32
+"""Values of a YAML, each as often as it stands for, and mappings and lists within one another."""
 
 _STEP = re.compile(r"\[(\d*)\]|\.?([^.\[\]]+)|\.$")
 
@@ -215,8 +221,75 @@ def read_settings(path: Path) -> dict[str, Value]:
         If it cannot be read, or holds something else.
     """
     try:
-        content = yaml.safe_load(path.read_text("utf-8"))
-    except (OSError, ValueError, yaml.YAMLError) as error:
+        regular = path.is_file()  # a pipe would wait for somebody who writes
+        require(regular, path.name, "nothing" if not path.exists() else "no file", "a file")
+        size = path.stat().st_size
+        require(size <= MAX_YAML_BYTES, path.name, f"{size} bytes", f"at most {MAX_YAML_BYTES}")
+        text = path.read_text("utf-8")
+    except InputError:
+        raise
+    except (OSError, ValueError) as error:
         raise InputError(path.name, type(error).__name__, "readable YAML") from error
+    content = plain_yaml(text, path.name, "readable YAML")
     require(isinstance(content, dict), path.name, type(content).__name__, "a mapping of settings")
     return flatten(content)
+
+
+def plain_yaml(text: str, where: str, expected: str) -> Any:
+    """Read YAML from whoever wrote it as plain data, and no more of it than stands there.
+
+    Parameters
+    ----------
+    text : str
+        The YAML.
+    where : str
+        Where it stands, for messages.
+    expected : str
+        What would be right.
+
+    Returns
+    -------
+    object
+        Mappings, lists, text, numbers, dates, true, false or null.
+
+    Raises
+    ------
+    InputError
+        If it is no YAML, or longer than `MAX_YAML_BYTES`, of more than `MOST_NODES` values, all
+        aliases followed, nested more deeply than `DEEPEST`, or has tags that make other things.
+    """
+    size = len(text)
+    require(size <= MAX_YAML_BYTES, where, f"{size} characters", f"at most {MAX_YAML_BYTES}")
+    try:
+        _check_bounds(text, where)
+        return yaml.safe_load(text)
+    except InputError:
+        raise
+    except (yaml.YAMLError, ValueError, OverflowError, TypeError, AttributeError) as error:
+        reason = " ".join(str(error).split("\n")[0].split())
+        raise InputError(where, f"text that is no YAML ({reason})", expected) from error
+
+
+def _check_bounds(text: str, where: str) -> None:
+    """Count values without making any: an alias counts as all that it stands for."""
+    sizes: dict[str, int] = {}
+    within: list[tuple[str | None, int]] = []
+    count = 0
+    for event in yaml.parse(text, yaml.SafeLoader):
+        if isinstance(event, yaml.AliasEvent):
+            endless = any(event.anchor == anchor for anchor, _ in within)
+            count += MOST_NODES + 1 if endless else sizes.get(event.anchor, 1)
+        elif isinstance(event, yaml.CollectionEndEvent):
+            anchor, before = within.pop()
+            if anchor:
+                sizes[anchor] = count - before
+        elif isinstance(event, yaml.NodeEvent):
+            if isinstance(event, yaml.CollectionStartEvent):
+                within.append((event.anchor, count))
+            elif event.anchor:
+                sizes[event.anchor] = 1
+            count += 1
+        most = f"at most {MOST_NODES} values, each alias counted as what it stands for"
+        require(count <= MOST_NODES, where, "too many values", most)
+        most = f"at most {DEEPEST} within one another"
+        require(len(within) <= DEEPEST, where, "too many nested lists or mappings", most)
