@@ -1,5 +1,6 @@
 """Clearance of a path: its least distance to an obstacle; beyond the map all are obstacles."""
 
+import math
 from functools import lru_cache
 
 import numpy as np
@@ -12,8 +13,8 @@ TITLE = "Clearance, fields"
 
 
 @lru_cache(maxsize=1)  # a run has one map
-def distances(grid: GridMap) -> NDArray[np.float64]:
-    """Compute the distance of every field to the nearest obstacle or the border.
+def nearest(grid: GridMap) -> NDArray[np.int32]:
+    """Find the nearest obstacle of every field; distances of all take three times the room.
 
     Parameters
     ----------
@@ -22,13 +23,13 @@ def distances(grid: GridMap) -> NDArray[np.float64]:
 
     Returns
     -------
-    (rows, cols) float64
-        Euclidean distance between centres, in fields.
+    (2, rows + 2, cols + 2) int32
+        Row and column of the nearest one, on the map with a border of obstacles round it.
     """
     from scipy.ndimage import distance_transform_edt
 
     free = np.pad(~grid.obstacles, 1, constant_values=False)
-    return np.asarray(distance_transform_edt(free)[1:-1, 1:-1])
+    return np.asarray(distance_transform_edt(free, return_distances=False, return_indices=True))
 
 
 def measure(problem: Problem, plan: Plan) -> float:
@@ -46,5 +47,6 @@ def measure(problem: Problem, plan: Plan) -> float:
     float
         Euclidean distance of the nearest field's centre to an obstacle's, in fields.
     """
-    x, y = plan.path[:, 0], plan.path[:, 1]
-    return float(distances(problem.map)[y, x].min())
+    x, y = 1 + plan.path.T.astype(np.int64)
+    v, u = nearest(problem.map)[:, y, x]
+    return math.sqrt(((u - x) ** 2 + (v - y) ** 2).min())

@@ -9,7 +9,7 @@ import pytest
 
 from gapath.discovery import kinds, load
 from gapath.grid import GridMap
-from gapath.metrics.clearance import distances
+from gapath.metrics.clearance import measure as clearance
 from gapath.planning.path import path_weights
 from gapath.problem import Plan, PlanStatus, Problem, no_path
 from gapath.task import Row, columns, measured
@@ -74,7 +74,9 @@ def test_what_did_not_succeed_has_no_metrics(status, path):
 
 
 def test_what_lies_outside_the_map_is_an_obstacle():
-    assert distances(GridMap("empty", np.zeros((5, 5)))).tolist()[2] == [1, 2, 3, 2, 1]
+    empty = Problem(GridMap("empty", np.zeros((5, 5))), (0, 0), (4, 4))
+    plans = [Plan(PlanStatus.FOUND, np.array([(x, 2)], dtype=np.int32)) for x in range(5)]
+    assert [clearance(empty, plan) for plan in plans] == [1, 2, 3, 2, 1]
 
 
 @pytest.mark.parametrize("name", kinds("metric"))
