@@ -27,6 +27,7 @@ from gapath.recorders import mcap
 from gapath.recorders.mcap import FILE
 from gapath.store.durable import part_of
 from gapath.store.records import MANIFEST, read_record
+from gapath.store.runfolder import WORK
 from gapath.store.settings import text_of
 from gapath.task import find_task
 
@@ -117,7 +118,7 @@ def _log_of(path: Path) -> Path:
     if not folder.is_dir():
         return path
     log, run = folder / FILE, read_record(folder)
-    part = part_of(log)
+    part = part_of(folder / WORK / FILE)
     rest = f"; what is left: gapath-log salvage {part}" if part.is_file() else ""
     require(not run.fault, path, run.fault, f"a log, or the folder of a run that is whole{rest}")
     require(FILE in run.known.files, path, "a run without a log", "one with recorder=mcap")
@@ -172,9 +173,9 @@ def _summary(events: Iterator[Event]) -> tuple[RunStarted, bool, Counter[str]]:
 
 def _salvage(arguments: argparse.Namespace) -> int:
     path = arguments.file
-    output = arguments.output or (
-        path.with_suffix("") if path.suffix == ".part" else path.with_suffix(".salvaged.mcap")
-    )
+    place = path.parent.parent if path.parent.name == WORK else path.parent  # the next run empties
+    name = path.stem if path.suffix == ".part" else f"{path.stem}.salvaged.mcap"
+    output = arguments.output or place / name
     count = mcap.salvage(path, output)
     print(f"{output}: {count} events saved and read back")
     return 0

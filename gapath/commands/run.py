@@ -30,7 +30,7 @@ from gapath.store.runfolder import RunFolder
 from gapath.store.status import RunState
 from gapath.task import find_task
 
-BAD_INPUT, FAILED, INTERRUPTED = 2, 1, 130
+BAD_INPUT, FAILED, BUSY, INTERRUPTED = 2, 1, 75, 130
 
 
 class OtherConfigurations(SearchPathPlugin):  # type: ignore[misc]
@@ -108,7 +108,7 @@ def job(config: DictConfig) -> int:
     except OSError as error:
         error.filename = "standard output"
         return refuse(error, words, sweep)
-    return 0
+    return BUSY if execution.state is RunState.BUSY else 0
 
 
 def typed(hydra: DictConfig) -> list[str]:
@@ -219,7 +219,7 @@ def describe(run: Run, execution: Execution, short: bool) -> str:
     if execution.state is RunState.SKIPPED:
         return f"{what}: skipped, {folder} is whole (force=true runs it again)"
     if execution.state is RunState.BUSY:
-        return f"{what}: skipped, another process is working on {folder}"
+        return f"{what}: busy, another process is working on {folder}"
     rows = execution.rows
     if short:
         return f"{what}: {printable(run.task.line(rows))}, {folder}"
@@ -242,7 +242,11 @@ def describe(run: Run, execution: Execution, short: bool) -> str:
 
 
 def main() -> None:
-    """Run the command ``gapath``; exits with 0, 1 (a job failed) or 2 (bad input)."""
+    """Run the command ``gapath``.
+
+    Exits with 0, `FAILED`, `BAD_INPUT` (also what cannot be written), `INTERRUPTED`, or `BUSY` if
+    nothing is wrong but another process does a job. Of a sweep the first job that failed decides.
+    """
     Plugins.instance().register(OtherConfigurations)
     os.environ["HYDRA_FULL_ERROR"] = "1"  # errors come here instead of being printed
     words: list[str] = []
@@ -267,4 +271,4 @@ def main() -> None:
     except Exception as error:  # a job catches its own: this is a command line that is wrong
         sys.exit(refuse(error, words, sweep))
     if failed:
-        sys.exit(failed[0])
+        sys.exit(next((code for code in failed if code != BUSY), BUSY))

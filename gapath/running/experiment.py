@@ -16,7 +16,7 @@ from gapath.planning.acceleration import AUTO, with_kernels
 from gapath.problem import Plan
 from gapath.running.config import Run, task_of
 from gapath.store.durable import named, write_whole
-from gapath.store.inputs import Inputs, watched
+from gapath.store.inputs import watched
 from gapath.store.keys import run_key, setting_hash, versions
 from gapath.store.records import (
     CONFIG,
@@ -29,7 +29,7 @@ from gapath.store.rows import parquet
 from gapath.store.runfolder import Busy, RunFolder
 from gapath.store.settings import nested, tabular
 from gapath.store.status import STATUS, RunState, Status, now
-from gapath.store.whole import is_whole
+from gapath.store.whole import files_of, finish, is_finished, is_whole, settle
 from gapath.task import Batch, columns, results
 
 
@@ -124,12 +124,17 @@ def execute(run: Run, command: str, progress: bool = True) -> Execution:
         If the folder, or a file in it, cannot be written.
     """
     folder = run_folder(run)
+    skipped = Execution(folder.path, RunState.SKIPPED, [], [])
+    if not run.force and is_whole(folder, run.settings):  # also where nothing may be written
+        return skipped
     folder.create()
     try:
         with folder.lock():
-            if not run.force and is_whole(folder):
-                return Execution(folder.path, RunState.SKIPPED, [], [])
-            return _execute_held(run, folder, command, progress)
+            settle(folder)
+            whole = is_whole(folder, run.settings)
+            if whole and not run.force:
+                return skipped
+            return _execute_held(run, folder, command, progress, whole)
     except Busy:
         return Execution(folder.path, RunState.BUSY, [], [])
 
@@ -140,35 +145,44 @@ def run_folder(run: Run) -> RunFolder:
     return RunFolder(Path(run.output) / run.experiment / key)
 
 
-def _execute_held(run: Run, folder: RunFolder, command: str, progress: bool) -> Execution:
-    started = now()
-    Status(RunState.RUNNING, started).write(folder)
+def _execute_held(
+    run: Run, folder: RunFolder, command: str, progress: bool, again: bool
+) -> Execution:
+    """Do a run in a folder that is held; `again`: one is there whole, and stays until this is."""
+    work = folder.work
+    told = work if again else folder  # where it is said how far this run is
+    status = Status(RunState.RUNNING, now())
     try:
+        folder.begin()
+        manifest = _manifest(run, folder, command)
+        before = files_of(folder, Status.read(folder.path).manifest)
+        digest = replace(manifest, files=before).write(told)  # what it is, should it be killed
+        status = replace(status, manifest=digest)
+        status.write(told)
         config = yaml.safe_dump(nested(run.settings), sort_keys=False, allow_unicode=True)
-        write_whole(folder.path / CONFIG, config.encode())
-        _manifest(run, folder, command, [], {}).write(folder)  # what it is, should it be killed
+        write_whole(work.path / CONFIG, config.encode())
         with watched() as read:
             optimum = run.task.optimum(run.problem)
-            rows, recorded = _do_trials(run, optimum, folder, progress)
+            rows, recorded = _do_trials(run, optimum, work, progress)
         place = folder.path.resolve()  # recorders may read what they have written
         late = {p: d for p, d in read.items() if not Path(p).resolve().is_relative_to(place)}
         values = [row.values() for row in rows]
-        write_whole(folder.path / TRIALS, _table(run, values))
+        write_whole(work.path / TRIALS, _table(run, values))
         names = [CONFIG, TRIALS, *recorded]
-        folder.keep_only([*names, STATUS, MANIFEST])
-        manifest = _manifest(run, folder, command, names, late)
         came = results(type(run.task), {name: [row[name] for row in values] for name in values[0]})
-        replace(manifest, results=came).write(folder)
+        files = {name: FileEntry.of(work, name) for name in names}
+        done = replace(manifest, files=files, late_inputs=late, results=came)
         state = RunState.DONE if optimum.feasible else RunState.INFEASIBLE
-        Status(state, started, now()).write(folder)
+        finish(folder, done, replace(status, state=state, finished=now()))
         return Execution(folder.path, state, rows, [*names, MANIFEST, STATUS])
     except BaseException as error:
         interrupted = isinstance(error, KeyboardInterrupt)
         state = RunState.INTERRUPTED if interrupted else RunState.FAILED
         message = "" if interrupted else traceback.format_exc()
-        with suppress(InputError):  # a full disk has no room for this, either
-            Status(state, started, now(), message).write(folder)
-        error.add_note(f"the traceback is in {folder.path / STATUS}")
+        if not is_finished(folder):
+            with suppress(InputError):  # a full disk has no room for this, either
+                replace(status, state=state, finished=now(), message=message).write(told)
+        error.add_note(f"the traceback is in {told.path / STATUS}")
         raise
 
 
@@ -225,9 +239,8 @@ def _table(run: Run, rows: list[dict[str, Any]]) -> bytes:
     return parquet(types, rows, own)
 
 
-def _manifest(
-    run: Run, folder: RunFolder, command: str, names: list[str], late: Inputs
-) -> Manifest:
+def _manifest(run: Run, folder: RunFolder, command: str) -> Manifest:
+    """Say what a run is, not yet what came of it."""
     return Manifest(
         key=folder.path.name,
         setting=setting_hash(run.settings, run.problem, run.method_inputs),
@@ -246,12 +259,9 @@ def _manifest(
         command=command,
         map_inputs=dict(run.map_inputs),
         method_inputs=dict(run.method_inputs),
-        late_inputs=dict(late),
+        late_inputs={},
         versions=versions(),
-        files={
-            name: FileEntry(folder.sha256(name), (folder.path / name).stat().st_size)
-            for name in names
-        },
+        files={},
         settings=dict(run.settings),
         queries="" if run.problem.queries is None else run.problem.queries.digest,
     )

@@ -1,9 +1,18 @@
-"""Files that are there whole or not at all, even after a crash."""
+"""Files that are there whole or not at all, even after a crash, and are nobody else's.
+
+Folders of runs are shared, and the names in them can be foreseen: where a file is made, a link
+that somebody planted under its name goes and is not followed, and what is read is a regular file,
+not a device or a pipe.
+"""
 
 import contextlib
+import errno
 import os
+import stat
 from collections.abc import Iterator
+from io import FileIO
 from pathlib import Path
+from typing import IO
 
 from gapath.errors import InputError
 
@@ -34,6 +43,80 @@ def part_of(path: Path) -> Path:
     return path.with_name(f"{path.name}.part")
 
 
+def new_file(path: Path) -> IO[bytes]:
+    """Make a file to be written.
+
+    Parameters
+    ----------
+    path : Path
+        Its name; what has it goes.
+
+    Returns
+    -------
+    file
+        Open for writing.
+
+    Raises
+    ------
+    OSError
+        If it cannot be made, or somebody else makes it meanwhile.
+    """
+    path.unlink(missing_ok=True)
+    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
+    return os.fdopen(os.open(path, flags, 0o666), "wb")
+
+
+def open_regular(path: str | Path, links: bool = False) -> FileIO:
+    """Open a regular file to be read.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    links : bool
+        Follow links.
+
+    Returns
+    -------
+    file
+        Open for reading, unbuffered.
+
+    Raises
+    ------
+    OSError
+        If it is another thing or cannot be read.
+    """
+    # Without O_NONBLOCK a pipe would wait for somebody who writes.
+    flags = os.O_RDONLY | os.O_NONBLOCK | (0 if links else os.O_NOFOLLOW)
+    try:
+        file = os.fdopen(os.open(path, flags), "rb", buffering=0)
+    except OSError as error:
+        if error.errno == errno.ELOOP:
+            error.strerror = "a link"
+        raise
+    if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+        file.close()
+        raise OSError(errno.EINVAL, "no regular file", str(path))
+    return file
+
+
+def make_folder(path: Path) -> None:
+    """Make a folder, and those that it is to be in, durably; raises OSError if it cannot be."""
+    if not path.is_dir():
+        make_folder(path.parent)
+        path.mkdir(exist_ok=True)
+        sync_folder(path.parent)
+
+
+def sync_folder(path: Path) -> None:
+    """Make the names in a folder durable; raises OSError if they cannot be."""
+    folder = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(folder)
+    finally:
+        os.close(folder)
+
+
 def write_part(path: Path, data: bytes) -> None:
     """Write all of a file's content, durably, under its ``.part`` name.
 
@@ -49,7 +132,7 @@ def write_part(path: Path, data: bytes) -> None:
     InputError
         If it cannot be written.
     """
-    with named(path), part_of(path).open("wb") as file:
+    with named(path), new_file(part_of(path)) as file:
         file.write(data)
         file.flush()
         os.fsync(file.fileno())
@@ -72,11 +155,7 @@ def publish(source: Path, target: Path) -> None:
     """
     with named(target):
         source.replace(target)
-        folder = os.open(target.parent, os.O_RDONLY)
-        try:
-            os.fsync(folder)
-        finally:
-            os.close(folder)
+        sync_folder(target.parent)
 
 
 def write_whole(path: Path, data: bytes) -> None:

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from gapath.discovery import conf_packages, other_folders
+from gapath.store.durable import open_regular
 from gapath.store.settings import Flat
 
 Inputs: TypeAlias = Mapping[str, str]
@@ -79,7 +80,8 @@ def unchanged(inputs: Inputs) -> bool:
 
 
 def _sha256(path: str) -> str:
-    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+    with open_regular(path, links=True) as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 @lru_cache

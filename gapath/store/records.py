@@ -1,8 +1,10 @@
 """What a run folder says of its run: manifest, status, settings; and which folders there are."""
 
 import contextlib
+import hashlib
 import os
 import stat
+import time
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from functools import cached_property
@@ -10,11 +12,20 @@ from pathlib import Path
 
 from gapath.discovery import kinds
 from gapath.errors import InputError, require
+from gapath.store.durable import named, write_whole
 from gapath.store.results import Results
-from gapath.store.runfolder import RunFolder
+from gapath.store.runfolder import LOCK, WORK, RunFolder, is_locked
 from gapath.store.settings import Flat, Value, read_settings
 from gapath.store.shape import shaped
-from gapath.store.status import STATUS, WHOLE, RunState, Status, load
+from gapath.store.status import (
+    STATUS,
+    WHOLE,
+    RunState,
+    Status,
+    as_json,
+    contents,
+    parsed,
+)
 
 MANIFEST, CONFIG, TRIALS = "manifest.json", "config.yaml", "trials.parquet"
 """Names of files that every run folder has, beside `STATUS`."""
@@ -26,6 +37,21 @@ class FileEntry:
 
     sha256: str
     bytes: int
+
+    @classmethod
+    def of(cls, folder: RunFolder, name: str) -> "FileEntry":
+        """Describe a file; raises InputError if it is none, or has a name that no run's has."""
+        _check_name(name, "recorder, file")
+        with named(folder.path / name):
+            return cls(folder.sha256(name), (folder.path / name).stat().st_size)
+
+
+_NO_FILES = ("", ".", "..", STATUS, MANIFEST, LOCK, WORK)
+
+
+def _check_name(name: str, where: str) -> None:
+    plain = not {"/", "\0"}.intersection(name) and name not in _NO_FILES
+    require(plain, where, name, "the name of a file of its own within the folder")
 
 
 @dataclass(frozen=True)
@@ -67,7 +93,8 @@ class Manifest:
         Those that were read only while trials ran: no part of what was tried, since a library may
         read them once a process, but the run is done anew where one has changed.
     files : mapping of str to FileEntry
-        All files but the manifest and the status; none until the run is finished.
+        All files but the manifest and the status. Until the run is finished, those of an earlier
+        one, which are in its place, or none.
     settings : mapping of str to str, int, float, bool or None
         The settings, flat. Who reads runs reads them here; ``config.yaml`` says the same to
         people, and is read for what earlier versions made: then None stands here.
@@ -102,18 +129,22 @@ class Manifest:
     queries: str = ""
     results: Results | None = None
 
-    def write(self, folder: RunFolder) -> None:
-        """Write it, whole."""
-        folder.write_json(MANIFEST, asdict(self))
+    def write(self, folder: RunFolder) -> str:
+        """Write it, whole; gives its SHA-256, for the status."""
+        data = as_json(asdict(self))
+        write_whole(folder.path / MANIFEST, data)
+        return hashlib.sha256(data).hexdigest()
 
     @classmethod
-    def read(cls, folder: Path) -> "Manifest":
+    def read(cls, folder: Path, sha256: str = "") -> "Manifest":
         """Read a folder's manifest.
 
         Parameters
         ----------
         folder : Path
             A run folder.
+        sha256 : str
+            What its status says of it.
 
         Returns
         -------
@@ -123,17 +154,21 @@ class Manifest:
         Raises
         ------
         InputError
-            If it cannot be read, or something is missing, of another type or out of range.
+            If it cannot be read, is another, or something is missing, of another type or out of
+            range.
         """
-        found: Manifest = shaped(cls, load(folder, MANIFEST), MANIFEST)
+        data = contents(folder, MANIFEST)
+        same = sha256 in ("", hashlib.sha256(data).hexdigest())
+        expected = f"the one of which {STATUS} speaks; the command that made it mends it"
+        require(same, MANIFEST, "another manifest", expected)
+        found: Manifest = shaped(cls, parsed(data, MANIFEST), MANIFEST)
         known, task, trials, seed = kinds("task"), found.task, found.trials, found.seed
         require(task in known, f"{MANIFEST}, task", task, f"one of {', '.join(known)}")
         good = 1 <= trials <= 10**6
         require(good, f"{MANIFEST}, trials", trials, "an integer from 1 to 10^6")
         require(0 <= seed < 2**64, f"{MANIFEST}, seed", seed, "an integer in [0, 2^64)")
-        where = f"{MANIFEST}, files"
         for name in found.files:
-            require("/" not in name, where, name, "a name within the folder")
+            _check_name(name, f"{MANIFEST}, files")
         return found
 
 
@@ -199,10 +234,24 @@ def read_record(folder: Path) -> RunRecord:
     RunRecord
         Its sizes of files are compared; hashing every log would take longer than reading it.
     """
+    found = _read(folder)
+    end = time.monotonic() + _PATIENCE
+    while found.fault and found.state in WHOLE and is_locked(folder / LOCK):
+        if time.monotonic() > end:
+            break
+        time.sleep(0.005)  # a run that was done again takes its place: a matter of moments
+        found = _read(folder)
+    return found
+
+
+_PATIENCE = 1.0  # seconds
+
+
+def _read(folder: Path) -> RunRecord:
     status = Status.read(folder)
     manifest, fault = None, ""
     try:
-        manifest = Manifest.read(folder)
+        manifest = Manifest.read(folder, status.manifest)
         require(TRIALS in manifest.files, f"{MANIFEST}, files", [*manifest.files], TRIALS)
         for name, entry in sorted(manifest.files.items()):
             size = _size(f"{folder}/{name}")
@@ -261,7 +310,7 @@ def _folders(place: Path) -> Iterator[Path]:
 
 def _size(path: str) -> int | str:
     try:
-        found = os.stat(path)  # noqa: PTH116  # pathlib takes as long again
+        found = os.lstat(path)  # pathlib takes as long again
     except FileNotFoundError:
         return "no file"
     return found.st_size if stat.S_ISREG(found.st_mode) else "no file"

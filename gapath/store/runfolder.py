@@ -1,22 +1,28 @@
-"""A run folder: named by a key, held by a lock, whole or not there.
+"""A run folder: named by a key, held by a lock, and with a place for the run under way.
 
-Files carry ``.part`` until they are complete and durable; the manifest lists every file
-with its SHA-256, and ``status.json`` says "done" last of all (`gapath.store.records`).
+What a run writes lies in `WORK` within it until all of it is whole (`gapath.store.whole`).
 """
 
 import contextlib
 import fcntl
 import hashlib
-import json
-from collections.abc import Iterable, Iterator
+import os
+import shutil
+import time
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-from gapath.errors import InputError
-from gapath.store.durable import write_whole
+from gapath.errors import InputError, require
+from gapath.store.durable import make_folder, named, open_regular, sync_folder
 
 LOCK = "run.lock"
+"""The file whose lock (flock) a run holds."""
+
+WORK = "run.part"
+"""The folder of the run under way, or of one that was cut short; the next run empties it."""
+
+_PATIENCE = 10.0  # seconds for which looks at a lock may keep a run from it
 
 
 class Busy(Exception):
@@ -29,22 +35,27 @@ class RunFolder:
 
     path: Path
 
+    @property
+    def work(self) -> "RunFolder":
+        """The folder of the run under way."""
+        return RunFolder(self.path / WORK)
+
     def create(self) -> None:
-        """Make the folder.
+        """Make the folder, durably.
 
         Raises
         ------
         InputError
-            If it cannot be written.
+            If it cannot be made, or a link has its name.
         """
         with self._named():
-            self.path.mkdir(parents=True, exist_ok=True)
-            (self.path / LOCK).touch()
+            make_folder(self.path)
+        require(not self.path.is_symlink(), "output", self.path, "a folder of its own, not a link")
 
     def create_parent(self) -> None:
         """Make the folder that it is to be in; raises InputError as `create` does."""
         with self._named():
-            self.path.parent.mkdir(parents=True, exist_ok=True)
+            make_folder(self.path.parent)
 
     @contextlib.contextmanager
     def _named(self) -> Iterator[None]:
@@ -62,36 +73,69 @@ class RunFolder:
         ------
         Busy
             If another process holds it.
+        InputError
+            If it cannot be written, or its file system has no locks.
         """
-        with (self.path / LOCK).open("w") as file:
-            try:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except OSError as error:
-                raise Busy(str(self.path)) from error
+        with self._named():
+            flags = os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK
+            lock = os.open(self.path / LOCK, flags, 0o666)
+        try:
+            self._hold(lock)
             yield
+        finally:
+            os.close(lock)
 
-    def write_json(self, name: str, content: dict[str, Any]) -> None:
-        """Write a JSON file, whole."""
-        write_whole(self.path / name, (json.dumps(content, indent=2) + "\n").encode())
+    def _hold(self, lock: int) -> None:
+        """Take the lock; one that is only looked at (`is_locked`) is free in a moment."""
+        end = time.monotonic() + _PATIENCE
+        try:
+            while not _taken(lock, fcntl.LOCK_EX):
+                if time.monotonic() > end or not _taken(lock, fcntl.LOCK_SH):
+                    raise Busy(str(self.path))
+                fcntl.flock(lock, fcntl.LOCK_UN)
+                time.sleep(0.001)
+        except OSError as error:
+            found = f"a file system that cannot lock a file ({error.strerror})"
+            expected = "a folder on one with flock, such as a local disk"
+            raise InputError("output", f"{self.path}, {found}", expected) from error
 
-    def keep_only(self, names: Iterable[str]) -> None:
-        """Remove all other files, which an earlier run left, once this one is whole."""
-        kept = {LOCK, *names}
-        for path in self.path.iterdir():
-            if path.name not in kept and path.is_file():
-                path.unlink()
+    def begin(self) -> None:
+        """Make the folder of the run under way anew; raises InputError if it cannot be."""
+        self.clear()
+        with named(self.work.path):
+            self.work.path.mkdir()
+            sync_folder(self.path)
+
+    def clear(self) -> None:
+        """Remove the folder of the run under way; raises InputError if it cannot be."""
+        work = self.work.path
+        with named(work):
+            if work.is_dir() and not work.is_symlink():
+                shutil.rmtree(work)
+            else:
+                work.unlink(missing_ok=True)
 
     def sha256(self, name: str) -> str:
-        """Hash a file: 64 hexadecimal digits."""
-        with (self.path / name).open("rb") as file:
+        """Hash a file: 64 hexadecimal digits; raises OSError unless it is regular and read."""
+        with open_regular(self.path / name) as file:
             return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def is_locked(path: Path) -> bool:
-    """Tell whether a living process holds a lock."""
-    with contextlib.suppress(OSError), path.open("rb") as lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
-        except BlockingIOError:
-            return True
+    """Tell whether a living process holds a lock.
+
+    To look is to share it for a moment, which keeps no run from it: who finds a lock shared waits.
+    To ask without that (F_GETLK) is only possible of record locks, which a process loses as soon
+    as it closes the file once more, as each look within it would.
+    """
+    with contextlib.suppress(OSError), open_regular(path) as lock:
+        return not _taken(lock.fileno(), fcntl.LOCK_SH)
     return False
+
+
+def _taken(lock: int, how: int) -> bool:
+    try:
+        fcntl.flock(lock, how | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True

@@ -1,6 +1,8 @@
-"""How far a run is: ``status.json``, and how files of JSON are read."""
+"""How far a run is: ``status.json``, and how files of JSON are written and read."""
 
+import hashlib
 import json
+import os
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from enum import StrEnum
@@ -8,9 +10,17 @@ from pathlib import Path
 from typing import Any
 
 from gapath.errors import InputError, require
+from gapath.store.durable import open_regular, write_whole
 from gapath.store.runfolder import LOCK, RunFolder, is_locked
 
 STATUS = "status.json"
+
+_EARLIER = {"state", "started", "finished", "message"}
+"""All that a status of earlier versions says, which nothing vouches for."""
+
+_CHECK = "sha256"
+
+_MOST = 1 << 26  # bytes of a file of JSON
 
 
 class RunState(StrEnum):
@@ -34,7 +44,9 @@ WHOLE = (RunState.DONE, RunState.INFEASIBLE)
 
 @dataclass(frozen=True)
 class Status:
-    """How far a run is: ``status.json``, written last of all.
+    """How far a run is: ``status.json``, which vouches for itself and for the manifest.
+
+    It holds a hash of itself, so that not a bit of it changes unnoticed.
 
     Parameters
     ----------
@@ -46,16 +58,19 @@ class Status:
         When it ended.
     message : str
         What went wrong.
+    manifest : str
+        SHA-256 of the manifest that it is of; empty of earlier versions.
     """
 
     state: RunState
     started: str
     finished: str | None = None
     message: str = ""
+    manifest: str = ""
 
     def write(self, folder: RunFolder) -> None:
         """Write it, whole."""
-        folder.write_json(STATUS, asdict(self))
+        write_whole(folder.path / STATUS, _sealed(asdict(self)))
 
     @classmethod
     def read(cls, folder: Path) -> "Status":
@@ -73,15 +88,20 @@ class Status:
             lock; UNKNOWN without one that can be read.
         """
         try:
-            content = load(folder, STATUS)
+            data = contents(folder, STATUS)
+            content = parsed(data, STATUS)
+            earlier = content.pop(_CHECK, None) is None and set(content) <= _EARLIER
+            whole = earlier or data == _sealed(content)
+            require(whole, STATUS, "an altered file", "every byte as gapath wrote it")
         except InputError as error:
             return cls(RunState.UNKNOWN, "", message=str(error))
         given = content.get("state")
         state = _STATES.get(given, RunState.UNKNOWN) if isinstance(given, str) else RunState.UNKNOWN
         if state is RunState.RUNNING and not is_locked(folder / LOCK):
             state = RunState.INTERRUPTED
-        texts = [str(content.get(name) or "") for name in ("started", "finished", "message")]
-        return cls(state, texts[0], texts[1] or None, texts[2].strip())
+        names = ("started", "finished", "message", "manifest")
+        started, finished, message, manifest = (str(content.get(name) or "") for name in names)
+        return cls(state, started, finished or None, message.strip(), manifest)
 
     @property
     def date(self) -> str:
@@ -89,19 +109,38 @@ class Status:
         return self.finished or self.started
 
 
-def load(folder: Path, name: str) -> dict[str, Any]:
-    """Read an object of JSON; raises InputError if it cannot be read or is another thing."""
+def as_json(content: dict[str, Any]) -> bytes:
+    """Give an object as it stands in a file of JSON."""
+    return (json.dumps(content, indent=2) + "\n").encode()
+
+
+def _sealed(content: dict[str, Any]) -> bytes:
+    return as_json(content | {_CHECK: hashlib.sha256(as_json(content)).hexdigest()})
+
+
+def contents(folder: Path, name: str) -> bytes:
+    """Read a small file of a run folder; raises InputError if it cannot be read."""
     try:
         # As plain as can be, since a folder of runs has ten thousand of them.
-        with open(f"{folder}/{name}", "rb", buffering=0) as file:  # noqa: PTH123
-            content = json.loads(file.read().decode())
+        with open_regular(f"{folder}/{name}") as file:
+            size = os.fstat(file.fileno()).st_size
+            require(size <= _MOST, name, f"{size} bytes", "the few kB that gapath writes")
+            return file.read()
     except FileNotFoundError as error:
         raise InputError(name, "no file", "a file, as every finished run has one") from error
-    except (OSError, ValueError, RecursionError) as error:
+    except OSError as error:
+        raise InputError(name, error.strerror, "a regular file that can be read") from error
+
+
+def parsed(data: bytes, name: str) -> dict[str, Any]:
+    """Take a file's content as an object of JSON; raises InputError if it is another thing."""
+    try:
+        content = json.loads(data.decode())
+    except (ValueError, RecursionError) as error:
         raise InputError(name, type(error).__name__, "readable JSON") from error
     require(isinstance(content, dict), name, type(content).__name__, "a JSON object")
-    loaded: dict[str, Any] = content
-    return loaded
+    found: dict[str, Any] = content
+    return found
 
 
 def now() -> str:

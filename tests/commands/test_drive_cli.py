@@ -131,12 +131,14 @@ def test_a_run_folder_or_its_manifest_stands_for_its_log(gapath, tmp_path, capfd
     assert f"file:         {log}, " in call("info", folder)[1]
     assert call("rerun", manifest)[1] == f"{folder / 'trial-0.rrd'}\n"
 
-    log.rename(log.with_name("run.mcap.part"))
+    part = folder / "run.part" / "run.mcap.part"
+    part.parent.mkdir()
+    log.rename(part)
     (folder / "status.json").write_text('{"state": "interrupted"}')
     for command in ("info", "verify", "rerun", "view"):
         code, out, err = call(command, folder)
         assert (code, out) == (2, "")
-        assert f"{folder}: got interrupted" in err and f"gapath-log salvage {log}.part" in err
+        assert f"{folder}: got interrupted" in err and f"gapath-log salvage {part}" in err
 
     assert gapath(*DRIVE, "recorder=none", "name=bare")[0] == 0
     (bare,) = (path for path in tmp_path.glob("out/bare/*") if path.is_dir())

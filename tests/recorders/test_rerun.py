@@ -246,8 +246,9 @@ def test_files_are_parts_until_closed(tmp_path):
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full on this system")
-def test_a_full_disk_is_an_error(tmp_path):
-    (tmp_path / "trial-0.rrd.part").symlink_to("/dev/full")
+def test_a_full_disk_is_an_error(tmp_path, monkeypatch):
+    new_file = "gapath.store.durable.new_file"
+    monkeypatch.setattr(new_file, lambda path: Path("/dev/full").open("wb"))  # noqa: SIM115
     with pytest.raises(InputError, match="No space left"):
         record(tmp_path, run_of([evolution(1, 2)]))
 

@@ -171,9 +171,9 @@ def test_a_killed_run_leaves_nothing_that_looks_whole(tmp_path):
         "kg18_test4", "ga1", 100_000, {},
     )  # fmt: skip
     with runfolder.RunFolder(folder).lock():  # nobody holds it: the run is dead
-        assert not whole.is_whole(runfolder.RunFolder(folder))
+        assert not whole.is_whole(runfolder.RunFolder(folder), known.settings)
     saved = tmp_path / "saved.mcap"
-    assert log_cli.main(["salvage", str(folder / "run.mcap.part"), "-o", str(saved)]) == 0
+    assert log_cli.main(["salvage", str(folder / "run.part/run.mcap.part"), "-o", str(saved)]) == 0
     assert sum(1 for _ in read_events(saved)) > 3
 
 

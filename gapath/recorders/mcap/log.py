@@ -26,7 +26,7 @@ from gapath.recorders.mcap.format import (
 )
 from gapath.recorders.mcap.messages import Messages
 from gapath.recorders.mcap.reader import read_events, read_prefix
-from gapath.store.durable import part_of, publish
+from gapath.store.durable import new_file, part_of, publish
 
 FILE = "run.mcap"
 """Name of the log in a run folder."""
@@ -71,7 +71,7 @@ class Recorder:
     def open(self, folder: str) -> None:
         """Start ``run.mcap.part`` in an existing folder."""
         self._path = Path(folder) / FILE
-        self._file = self._part.open("wb")
+        self._file = new_file(self._part)
         self._count = self._bytes = 0
         self._writer = Writer(self._file, enable_data_crcs=True)
         self._writer.start(profile=PROFILE, library=LIBRARY)
