@@ -272,7 +272,7 @@ def plain_yaml(text: str, where: str, expected: str) -> Any:
 
 def _check_bounds(text: str, where: str) -> None:
     """Count values without making any: an alias counts as all that it stands for."""
-    sizes: dict[str, int] = {}
+    sizes: dict[str | None, int] = {}
     within: list[tuple[str | None, int]] = []
     count = 0
     for event in yaml.parse(text, yaml.SafeLoader):
