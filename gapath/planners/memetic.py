@@ -51,6 +51,9 @@ NAMES = ("wall following", "loops cut", "looks aside", "pulling", "search", "new
          "crossover", "reroute", "shortcut", "move", "cut", "insert")  # fmt: skip
 """What finds a path and makes it cheaper (`gapath.kernels.memetic.account`)."""
 
+SMALL = 64 * 64
+"""Fields of a map that is searched at once: there A* is through in the time of a first path."""
+
 _UNKNOWN = np.empty(0, dtype=np.uint32)
 
 
@@ -126,28 +129,24 @@ class Planner:
             OPTIMAL if its path costs the least that any path can, else FOUND; INFEASIBLE, proved,
             where there is none.
         """
-        grid, rule = problem.map, problem.corner_cutting
+        table, rule = problem.map.table, problem.corner_cutting
+        if table.size <= SMALL:
+            return _searched(shortest_path(problem))
         (x, y), (u, v) = problem.start, problem.target
-        least = grid.least_weight(problem.start, problem.target)
-        table = grid.table
+        least = problem.map.least_weight(problem.start, problem.target)
         ends, settings = (x, y, u, v), self.kernel_settings
-        known = _UNKNOWN
+        known, expansions = _UNKNOWN, 0
         told, path = evolve(table, *ends, int(rule), least, settings, known, stream)
-        expansions, proved = 0, False
         if told[STATUS] in (UNEVEN, CROWDED):
-            large = told[STATUS] == UNEVEN and table.size > LARGE
-            searched = coarse_path(problem) if large else shortest_path(problem)
-            if searched.status is PlanStatus.INFEASIBLE:
-                return searched
-            expansions, proved = searched.expansions, not large
-            # a large map's may be dearer than the walls', or there is none
-            if proved or searched.cost * SCALE < told[SHARES] + table[y, x]:
+            if told[STATUS] != UNEVEN or table.size <= LARGE:
+                return _searched(shortest_path(problem))
+            searched = coarse_path(problem)
+            expansions = searched.expansions
+            if searched.cost * SCALE < told[SHARES] + table[y, x]:  # or none, or dearer than walls'
                 found = searched.path.astype(np.uint32)
                 known = np.bitwise_or(found[:, 1] << X_BITS, found[:, 0])
             settings = settings.copy()
             settings[ASK] = 0
-            if proved:  # it cannot become cheaper
-                settings[EFFORT] = 0
             told, path = evolve(table, *ends, int(rule), least, settings, known, stream)
         numbers: list[int] = told[:CHANGES].tolist()
         if numbers[STATUS] < 0:
@@ -157,7 +156,7 @@ class Planner:
         began = SEARCH if len(known) else WALLS
         result = _Result(told, table.copy() if rule is _STRAIGHT else None, began)
         return Plan(
-            PlanStatus.OPTIMAL if best <= numbers[LOWER] or proved else PlanStatus.FOUND,
+            PlanStatus.OPTIMAL if best <= numbers[LOWER] else PlanStatus.FOUND,
             path,
             (best + numbers[START]) / SCALE,
             epochs=numbers[EPOCHS],
@@ -216,8 +215,6 @@ class _Result(NamedTuple):
         costs = (changes[:, TOTAL] + told[START]) / SCALE
         shares = told[SHARES:NUMBERS].copy()
         shares[WALLS] += told[START]
-        names = list(NAMES)  # what found the first path comes first, whatever it was
-        names[WALLS], names[self.began] = names[self.began], names[WALLS]
         population = Population(
             epochs=changes[:, EPOCH].astype(np.int32),
             individuals=changes[:, ROW].astype(np.int32),
@@ -226,7 +223,7 @@ class _Result(NamedTuple):
             costs=costs,
             ends=np.cumsum([len(polygon) for polygon in polygons]).astype(np.int32),
             vertices=np.concatenate(polygons),
-            names=tuple(names),
+            names=names_from(self.began),
             shares=tuple((shares / SCALE).tolist()),
         )
         standing = population.standing(int(told[EPOCHS]))
@@ -242,6 +239,62 @@ class _Result(NamedTuple):
             genotype="polygon",
             population=population,
         )
+
+
+def _searched(plan: Plan) -> Plan:
+    """Give A*'s plan as this planner's: an individual that nothing can make cheaper."""
+    if plan.feasible:
+        told = _Searched(plan.path, plan.cost)
+        for name, value in (
+            ("epochs", 1),
+            ("evaluations", 1),
+            ("trace", told.evolution),
+            ("lines", told.lines),
+        ):
+            object.__setattr__(plan, name, value)  # nobody else has it; a copy costs as much as A*
+    return plan
+
+
+class _Searched(NamedTuple):
+    """What there is to tell of a path that was searched."""
+
+    path: NDArray[np.int32]
+    cost: float
+
+    def lines(self) -> NDArray[np.int32]:
+        """Give the polygon."""
+        return corners(self.path)
+
+    def evolution(self) -> Evolution:
+        """Tell the history."""
+        cost, polygon, names = np.array([self.cost]), self.lines(), names_from(SEARCH)
+        one = np.ones(1, dtype=np.int32)
+        population = Population(
+            epochs=one,
+            individuals=one - 1,
+            operators=one - 1,
+            gains=np.zeros(1),
+            costs=cost,
+            ends=one * len(polygon),
+            vertices=polygon,
+            names=names,
+            shares=(self.cost, *(0.0 for _ in names[1:])),
+        )
+        return Evolution(
+            best=cost,
+            mean=cost,
+            chromosomes=polygon.reshape(1, -1),
+            way_points=polygon[np.newaxis],
+            genotype="polygon",
+            population=population,
+        )
+
+
+def names_from(began: int) -> tuple[str, ...]:
+    """Give `NAMES` such that what found the first path, WALLS or SEARCH, comes first."""
+    names = list(NAMES)
+    names[WALLS], names[began] = names[began], names[WALLS]
+    return tuple(names)
 
 
 def padded(polygons: list[NDArray[np.int32]]) -> NDArray[np.int32]:

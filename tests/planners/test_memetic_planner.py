@@ -26,6 +26,39 @@ from gapath.problem import CornerCutting, Plan, PlanStatus, Problem
 NAMES = ["memetic_quick", "memetic_quality"]
 
 
+@pytest.fixture(autouse=True, scope="module")
+def walls_on_small_maps():
+    """The algorithm is what is tested, on maps that would be searched."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(memetic, "SMALL", 0)
+        yield
+
+
+@given(problem=walled_problems(most=30))
+def test_a_small_map_is_searched(problem):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(memetic, "SMALL", 30 * 30)
+        plan = make().plan(problem, stream(1))
+    best = shortest_path(problem)
+    assert (plan.status, plan.cost, plan.expansions) == (best.status, best.cost, best.expansions)
+    assert plan.path.tolist() == best.path.tolist()
+    if plan.feasible:
+        assert flaw(problem, plan.path, plan.cost) is None
+        assert plan.shares() == dict.fromkeys(memetic.NAMES, 0.0) | {"search": plan.cost}
+        assert fields(plan.lines()) == plan.path.tolist()
+        assert plan.evolution.best.tolist() == [plan.cost]
+
+
+def fields(points):
+    """The fields of straight lines, each along a row, a column or a diagonal."""
+    path = points[:1].tolist()
+    for x, y in points[1:].tolist():
+        while path[-1] != [x, y]:
+            u, v = path[-1]
+            path.append([u + (x > u) - (x < u), v + (y > v) - (y < v)])
+    return path
+
+
 def make(name="memetic", **values):
     return build("planner", yaml_values("planner", name) | values, "planner")
 

@@ -38,7 +38,7 @@ from gapath.kernels.memetic.account import (
     WALLS,
 )
 from gapath.kernels.memetic.mutations import INSERT, propose, replace
-from gapath.kernels.memetic.polygon import cornered, fields_of, is_crowded, length_of
+from gapath.kernels.memetic.polygon import fields_of, is_crowded, length_of
 from gapath.kernels.memetic.population import (
     Diary,
     Individuals,
@@ -129,12 +129,9 @@ def evolve(
         numbers[STATUS] = UNEVEN
         return numbers, nothing
     order = np.empty(table.size, dtype=np.int32)
-    if searched and settings[EFFORT] == 0:
-        size, total, points, costs = cornered(table, path, count)
-    else:
-        size, total, points, costs = shortened(
-            table, path, count, rule, content, True, order, numbers[SHARES:]
-        )
+    size, total, points, costs = shortened(
+        table, path, count, rule, content, True, order, numbers[SHARES:]
+    )
     if settings[ASK] and total > content and is_crowded(points, size):
         numbers[STATUS] = CROWDED
         return numbers, nothing

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from gapath.kernels.jit import kernel
 from gapath.kernels.memetic.rays import append_ray
-from gapath.kernels.memetic.steps import X_BITS, X_MASK
+from gapath.kernels.memetic.steps import X_BITS
 
 CROWD, FEW = 6, 64
 """A path is crowded that has a vertex for fewer fields than CROWD, and FEW fields at least."""
@@ -129,40 +129,3 @@ def is_crowded(points: NDArray[np.int32], size: int) -> bool:
     """Tell whether obstacles bend a polygon of so many vertices every few fields."""
     length = length_of(points, size)
     return length >= FEW and CROWD * size > length
-
-
-@kernel
-def cornered(
-    table: NDArray[np.int32], path: NDArray[np.uint32], count: int
-) -> tuple[int, int, NDArray[np.int32], NDArray[np.int64]]:
-    """Make a polygon of a path as it is: its ends, and the fields at which it turns.
-
-    Parameters
-    ----------
-    table : (rows, cols) int32
-        `GridMap.table`.
-    path : (n,) uint32
-        Fields (`gapath.kernels.memetic.steps`), each a neighbour of the one before.
-    count : int
-        How many.
-
-    Returns
-    -------
-    size, total : int
-        How many vertices, and what it costs.
-    points, costs : arrays
-        Its vertices, and what their rays cost.
-    """
-    size, last = 1, count - 1
-    for i in range(1, count):
-        size += i == last or np.int64(path[i + 1]) - path[i] != np.int64(path[i]) - path[i - 1]
-    points, costs = np.empty((size, 2), dtype=np.int32), np.empty(size, dtype=np.int64)
-    points[0, 0], points[0, 1] = path[0] & X_MASK, path[0] >> X_BITS
-    n, total, cost = 1, np.int64(0), np.int64(0)
-    for i in range(1, count):
-        x, y = np.int64(path[i] & X_MASK), np.int64(path[i] >> X_BITS)
-        cost += table[y, x]
-        if i == last or np.int64(path[i + 1]) - path[i] != np.int64(path[i]) - path[i - 1]:
-            points[n, 0], points[n, 1], costs[n - 1] = x, y, cost
-            n, total, cost = n + 1, total + cost, np.int64(0)
-    return size, total, points, costs
