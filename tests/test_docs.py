@@ -214,7 +214,7 @@ def check_report(words):
 
 
 def check_gapath(words):
-    """Check every job of a command."""
+    """Check the jobs of a command: of a sweep as many as bring every value of each setting."""
     given = get_args_parser().parse_args(words)
     if given.shell_completion or given.help:
         return
@@ -222,7 +222,9 @@ def check_gapath(words):
         jobs = [given.overrides]
         if given.multirun:
             parsed = OverridesParser.create().parse_overrides(given.overrides)
-            jobs = BasicSweeper.split_arguments(parsed, None)[0]
+            each = [BasicSweeper.split_arguments([setting], None)[0] for setting in parsed]
+            most = max(map(len, each))
+            jobs = [[word for v in each for word in v[i % len(v)]] for i in range(most)]
         for overrides in jobs:
             check_job(tuple(overrides))
 
