@@ -4,12 +4,20 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 import pytest
 import yaml
+from matplotlib.collections import Collection
 from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
+from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.text import Text
 
+from gapath.pipelines.page import figures
 from gapath.pipelines.reading.collect import Collected, read_trials
 from gapath.running.naming import Method
 from gapath.store.records import (
@@ -40,6 +48,55 @@ from .synthetic import (
 )
 
 DATE = "2026-01-01T12:00:00"
+
+
+def shown_by(artist):
+    """What there is to be seen of a part of a figure."""
+    look = artist.get_label(), artist.get_visible(), artist.get_alpha()
+    match artist:
+        case Line2D():
+            line = artist.get_color(), artist.get_linestyle(), artist.get_marker()
+            return look, line, artist.get_xydata().tobytes()
+        case Text():
+            return look, artist.get_text(), artist.get_position(), artist.get_color()
+        case Patch():
+            return look, artist.get_facecolor(), artist.get_path().vertices.tobytes()
+        case Collection():
+            drawn = artist.get_offsets(), artist.get_facecolors(), artist.get_edgecolors()
+            paths = [path.vertices.tobytes() for path in artist.get_paths()]
+            return look, [np.asarray(each).tobytes() for each in drawn], paths
+        case AxesImage():
+            return look, artist.get_extent(), np.ma.filled(artist.get_array(), 0).tobytes()
+    return ()
+
+
+def shown_in(canvas):
+    """What there is to be seen in a figure, but for ticks and where its panels lie."""
+    for panel in canvas.axes:
+        yield panel.get_xlim(), panel.get_ylim(), panel.get_xlabel(), panel.get_ylabel()
+        yield panel.get_xscale(), panel.get_yscale()
+    parts = [part for each in (canvas, *canvas.axes) for part in each.get_children()]
+    legends = [part for part in parts if isinstance(part, Legend)]
+    parts += [part for each in legends for part in (*each.get_texts(), *each.legend_handles)]
+    yield from map(shown_by, parts)
+
+
+@pytest.fixture
+def undrawn(request, monkeypatch):
+    """Do not draw figures, which takes most of the time: their files are a hash of what they show.
+
+    Tests that are marked "drawn" draw them, in a module whose others do not.
+    """
+    if request.node.get_closest_marker("drawn"):
+        return
+
+    def save(canvas, file, *, format, **_):
+        shown = hashlib.sha256(repr(list(shown_in(canvas))).encode())
+        svg = f'<svg xmlns="http://www.w3.org/2000/svg"><style></style>{shown.hexdigest()}</svg>'
+        file.write(svg.encode() if format == "svg" else b"\x89PNG" + shown.digest())
+
+    monkeypatch.setattr(figures, "_raise_powers", lambda canvas: None)
+    monkeypatch.setattr(Figure, "savefig", save)
 
 
 def colours_of_lines(module, case, monkeypatch):

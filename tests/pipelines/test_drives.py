@@ -55,6 +55,7 @@ def test_other_instances_alone_make_no_table_of_drives():
     assert table_drives.section(drives_of(map_instance=[3, 5]), []) is None
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_plans_and_drives_do_not_mix(tmp_path, make_run, make_drive_run):
     make_run(tmp_path, "mine", "kg18_test1", "ga1", n=3, log=False)
     make_drive_run(tmp_path, "mine", "kg18_map1", "kg18", n=4)
@@ -298,6 +299,7 @@ def test_choices_are_held_against_the_first_row(case):
     assert list(table.data["worse"])[:2] == [0, 0]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_page_has_every_section_and_every_table_in_ascii(case, drive_outputs, tmp_path):
     files, skipped = make_report(drive_outputs, tmp_path)
     assert skipped == []

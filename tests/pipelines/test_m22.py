@@ -202,6 +202,7 @@ def test_damaged_logs_are_skipped_and_named(outputs, plans, tmp_path):
         m22_logs.read_first(broken[0])
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_report_shows_them(outputs, tmp_path):
     files, skipped = make_report(outputs, tmp_path)
     names = {file.name for file in files}

@@ -97,6 +97,7 @@ def test_each_experiment_map_and_method_has_its_metrics(outputs):
     assert made.data["succeeded"].sum() == frame["feasible"].sum()
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_every_task_has_its_metrics(tmp_path, make_run, make_drive_run):
     make_run(tmp_path, "table1", "kg18_test1", "ga1", n=3)
     make_drive_run(tmp_path, "drives", "kg18_map1", "kg18", n=4, log=True)

@@ -6,6 +6,8 @@ import pytest
 from ..conftest import sign
 from .conftest import compare
 
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 
 def test_settings_that_vary_beside_pair_trials_or_are_named(try_out, tmp_path, capsys):
     for population, points in ((40, 3), (40, 4), (80, 3), (80, 4)):

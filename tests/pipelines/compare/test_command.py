@@ -16,6 +16,8 @@ from gapath.pipelines.report.cli import main
 
 from .conftest import compare
 
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 
 def test_an_analysis_written_by_itself_agrees(sweep, tmp_path, capsys):
     compare(sweep, "--by", "planner.population", into=tmp_path)
@@ -86,6 +88,7 @@ def test_the_best_comes_first_and_says_from_which_it_can_be_told_apart(sweep, tm
     assert "nan" not in text.lower()
 
 
+@pytest.mark.drawn
 def test_every_file_says_the_same(sweep, tmp_path):
     compare(sweep, "--by", "planner.population", into=tmp_path)
     names = {path.name for path in tmp_path.iterdir()}

@@ -103,6 +103,7 @@ def test_where_no_problem_has_a_way_there_is_nothing_to_show(runs):
         assert module.section(none, used) is None
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_report_has_them_of_a_scenario_of_ones_own_too(gapath, runs, tmp_path):
     mine = ("task=scenario", "name=mine", "recorder=none", "planner=astar", "map=movingai")
     assert gapath(*mine, "map.path=m.map", "map.scenario=m.map.scen")[0] == 0

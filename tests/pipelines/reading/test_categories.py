@@ -19,6 +19,7 @@ def as_text(frame):
     return frame.astype(dict.fromkeys(text, "str"))
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize("which", ["outputs", "drive_outputs"])
 def test_every_file_of_a_report_is_the_same(which, request, tmp_path, monkeypatch):
     outputs = request.getfixturevalue(which)

@@ -17,6 +17,8 @@ from gapath.pipelines.report.cli import main
 
 from .test_report import Page
 
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 GROWTH = [
     {
         "class": name, "size": size, "planner": planner, "found": float(name != MAPS[3]),
@@ -66,6 +68,7 @@ def page_of(outputs):
     return (outputs / "report" / "bench.html").read_text("utf-8")
 
 
+@pytest.mark.drawn
 def test_every_answer_is_a_section_with_its_files(bench):
     outputs = bench(*ALL)
     page = page_of(outputs)
@@ -215,6 +218,7 @@ def test_the_figures_say_where_nothing_was_found():
     assert found.svg != figure.svg
 
 
+@pytest.mark.drawn
 def test_the_settings_have_a_panel_each():
     figure = bench_figure_settings.figure(frame(SETTING))
     assert "population 3 to 30: 3 to 30 us. control points 3 to 30: 3 to 30 us." in figure.alt

@@ -129,6 +129,7 @@ def test_every_section_has_a_place_of_its_own(page):
     assert len(ids) == len(set(ids))
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_only_what_was_run_is_shown(tmp_path, make_run):
     make_run(tmp_path, "plan", "kg18_test1", "ga3", n=1, log=False)
     files, _ = make_report(tmp_path, tmp_path / "report")
@@ -164,6 +165,7 @@ def test_what_a_section_wants_is_not_shown_as_other_trials(
     assert seen.get("mine", ["mine"]) == ["mine"]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_folder_that_was_renamed_is_still_read(tmp_path, make_run):
     make_run(tmp_path, "table1", "kg18_test1", "ga3", n=3)
     (tmp_path / "table1").rename(tmp_path / "mine")
@@ -172,6 +174,7 @@ def test_a_folder_that_was_renamed_is_still_read(tmp_path, make_run):
     assert "KG18 Table 1" in files[-1].read_text()
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_what_is_skipped_is_named_and_the_rest_goes_on(tmp_path, make_run, capsys):
     whole = make_run(tmp_path, "table1", "kg18_test1", "ga1")
     torn = make_run(tmp_path, "table1", "kg18_test2", "ga1")
@@ -194,6 +197,7 @@ def test_what_is_skipped_is_named_and_the_rest_goes_on(tmp_path, make_run, capsy
     assert str(tmp_path / "report" / "index.html") in out
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_hostile_name_stays_text(tmp_path, make_run):
     run = make_run(tmp_path, "plan", "kg18_test1", "ga3", n=1, log=False)
     manifest = json.loads((run / "manifest.json").read_text())

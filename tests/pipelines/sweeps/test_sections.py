@@ -210,6 +210,7 @@ def test_a_task_of_which_nothing_is_known_has_its_success(monkeypatch):
     ]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_report_has_a_section_for_each_experiment(tmp_path, make_run, make_drive_run):
     for planner in ("ga1", "astar"):
         make_run(tmp_path, "first", "kg18_test1", planner, n=3, log=False)
