@@ -18,7 +18,8 @@ TASK = "scenario"
 EXPERIMENT = FIELD
 ORDER = 98
 
-_TICKS = tuple(4 * 8**power for power in range(7))
+_TICKS = tuple(2**power for power in range(24))
+_MOST_TICKS = 5
 
 _PANELS = (
     ("found, %", "success", 100.0, "linear"),
@@ -59,7 +60,9 @@ def _middle(rows: pd.DataFrame) -> pd.Series:
 
 def _figure(file: str, family: str, rows: pd.DataFrame) -> Figure:
     look = looks(rows["method"])
-    limits = _middle(rows).min() / 1.3, _middle(rows).max() * 1.3
+    limits = max(rows["length_from"].min(), 2), rows["length_to"].max()  # powers of two
+    ticks = [tick for tick in _TICKS if limits[0] <= tick <= limits[1]]
+    ticks = ticks[:: -(-len(ticks) // _MOST_TICKS)]
     with style():
         canvas, axes = panels(len(_PANELS), height=2.1, same_axes=False)
         for panel, (title, name, scale, kind) in zip(axes, _PANELS, strict=True):
@@ -71,7 +74,7 @@ def _figure(file: str, family: str, rows: pd.DataFrame) -> Figure:
                 panel.plot(_middle(mine), scale * values, color=color, linestyle=dashes, marker=".")
             panel.set_xscale("log", base=2)
             panel.set_yscale(kind)
-            panel.xaxis.set_major_locator(FixedLocator(_TICKS))
+            panel.xaxis.set_major_locator(FixedLocator(ticks))
             panel.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
             panel.set_xlim(limits)
         axes[0].set_ylim(-4, 106)

@@ -51,7 +51,7 @@ def found_by(shares: Sequence[Mapping[str, float]]) -> Table:
         }
     )
     caption = (
-        f"Cost, medians (quartiles) over the {n} trials of the log that tell it, each by "
+        f"Cost, medians (quartiles) over those trials of the log that tell it, {n}, each by "
         "itself: what the first path cost, by how much it was lowered since, what the path found "
         "costs."
     )

@@ -82,7 +82,10 @@ def test_the_sections_name_their_source_and_lead_to_the_runs(runs):
         "field_lengths_kg18_s_classes_reconstructed", "field_lengths_movingai"
     ]  # fmt: skip
     assert "Sturtevant 2012" in figures[1].caption and "A* found 100 %" in figures[1].alt
-    assert all(figure.png.startswith(b"\x89PNG") for figure in figures)
+    for figure, (_, rows) in zip(figures, table.data.groupby("family", sort=True), strict=True):
+        assert figure.png.startswith(b"\x89PNG")
+        least = max(rows["length_from"].min(), 2)  # an axis says where it begins
+        assert f"<!-- {least} -->".encode() in figure.svg
 
 
 def test_generated_maps_of_one_size_are_a_family(gapath, tmp_path):

@@ -201,7 +201,7 @@ def test_a_run_says_what_found_the_path(tmp_path, make_run):
     for name, values in (("first path: first bend", first), ("path found", final),
                          ("lowered by moved vertex", moved)):  # fmt: skip
         assert rows[name].startswith(f"{number(statistics.median(values))} (")
-    assert "What found the path" in page and "over the 9 trials" in page
+    assert "What found the path" in page and "that tell it, 9, each" in page
 
 
 def test_shares_are_told_by_hand():
