@@ -208,7 +208,8 @@ def drive(
         fields = min(decision.fields, step_limit - step)
         if fields > 1 and path is not None and not changes.every:
             looks = known.follow(world.table, path, fields, rule, *sees)
-            ahead = tuple((x, y) for x, y in path[1 : len(looks.ends) + 1].tolist())
+            xs, ys = path[1 : len(looks.ends) + 1].T.tolist()
+            ahead = tuple(zip(xs, ys, strict=True))
         else:
             dx, dy = decision.place[0] - place[0], decision.place[1] - place[1]
             if dx or dy:

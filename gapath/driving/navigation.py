@@ -1,8 +1,8 @@
 """A drive through an unknown map, step by step: what every navigator must offer."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import NamedTuple, Protocol, overload, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,7 @@ from gapath.driving.known_map import KnownMap
 from gapath.events import Mode
 from gapath.grid import Field
 from gapath.kernels.rng import Stream
-from gapath.problem import CornerCutting, Plan
+from gapath.problem import Answer, CornerCutting
 
 Path = NDArray[np.int32]
 
@@ -36,10 +36,72 @@ class Call:
     """A, B or C (KG18 Figs 12-14)."""
     index: int
     """Number of the planner in its part's list."""
-    plan: Plan
+    plan: Answer
     """Its answer."""
     adopted: bool
     """Whether its path became the current one."""
+
+
+class Past(Sequence[Field]):
+    """A past path; one that goes on from another shares the fields of both.
+
+    So a drive takes time and memory as its steps, not as their square.
+
+    Parameters
+    ----------
+    fields : iterable of (x, y)
+        Fields in the order in which they were reached.
+    """
+
+    __slots__ = ("_fields", "_length")
+
+    def __init__(self, fields: Iterable[Field]) -> None:
+        self._fields = list(fields)  # of all that share it: only ever longer
+        self._length = len(self._fields)
+
+    def __len__(self) -> int:
+        """Give how many fields it has."""
+        return self._length
+
+    @overload
+    def __getitem__(self, index: int) -> Field: ...
+    @overload
+    def __getitem__(self, index: slice) -> "Past": ...
+    def __getitem__(self, index: int | slice) -> "Field | Past":
+        """Give a field, or the past path of some; a beginning is shared."""
+        if not isinstance(index, slice):
+            return self._fields[range(self._length)[index]]
+        begin, end, step = index.indices(self._length)
+        if begin == 0 and step == 1:
+            return self._beginning(end)
+        return Past(self._fields[: self._length][index])
+
+    def __iter__(self) -> Iterator[Field]:
+        """Give its fields in order."""
+        return iter(self._fields[: self._length])
+
+    def __add__(self, fields: tuple[Field, ...]) -> "Past":
+        """Go on; where another has gone on otherwise already, it is left to that one."""
+        known, end = self._fields, self._length + len(fields)
+        if len(known) > self._length:
+            if tuple(known[self._length : end]) == fields:
+                return self._beginning(end)
+            return Past((*known[: self._length], *fields))
+        known.extend(fields)
+        return self._beginning(end)
+
+    def __eq__(self, other: object) -> bool:
+        """Tell whether another sequence has the same fields."""
+        if isinstance(other, Past) and other._fields is self._fields:
+            return other._length == self._length
+        return isinstance(other, Sequence) and tuple(self) == tuple(other)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def _beginning(self, length: int) -> "Past":
+        beginning = Past.__new__(Past)
+        beginning._fields, beginning._length = self._fields, length
+        return beginning
 
 
 class Following(Protocol):
@@ -64,7 +126,7 @@ class Decision(NamedTuple):
     """The planners it called."""
     path: Path | None = None
     """The current path from the robot's field on, (n, 2) int32; None if it has none."""
-    past: tuple[Field, ...] = ()
+    past: Past | tuple[Field, ...] = ()
     """The way back, oldest field first, the robot's own last."""
     fields: int = 1
     """How many fields of the path to pass before the next decision; that comes sooner if an

@@ -4,20 +4,19 @@
 and go back when there is none.
 """
 
-from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
-from gapath.driving.navigation import Call, Decision, Path
+from gapath.driving.navigation import Call, Decision, Past, Path
 from gapath.events import Mode
 from gapath.grid import Field
 
 
-def simplified(past: tuple[Field, ...]) -> tuple[Field, ...]:
+def simplified(past: Past | tuple[Field, ...]) -> tuple[Field, ...]:
     """Cut every loop out of a past path (KG18 Sec. 4.6).
 
     Parameters
     ----------
-    past : tuple of (x, y)
+    past : Past or tuple of (x, y)
         Fields in the order in which they were reached.
 
     Returns
@@ -35,50 +34,42 @@ def simplified(past: tuple[Field, ...]) -> tuple[Field, ...]:
     return tuple(kept)
 
 
-@dataclass(frozen=True, eq=False)
-class Track:
-    """Where a robot came from and where it is going.
+class Track(NamedTuple):
+    """Where a robot came from and where it is going."""
 
-    Parameters
-    ----------
-    past : tuple of (x, y)
-        The past path, the robot's own field last.
-    path : (n, 2) int32 or None
-        The current path.
-    at : int
-        Index of the robot's own field on it.
-    returning : bool
-        Going back, because there is no path.
-    memory : object
-        What else the navigator remembers.
-    """
-
-    past: tuple[Field, ...]
+    past: Past
+    """The past path, the robot's own field last."""
     path: Path | None = None
+    """(n, 2) int32 the current path."""
     at: int = 0
+    """Index of the robot's own field on it."""
     returning: bool = False
+    """Going back, because there is no path."""
     memory: Any = None
+    """What else the navigator remembers."""
 
     def adopt(self, path: Path) -> "Track":
         """Take a path that begins in the robot's field."""
-        return replace(self, path=path, at=0, returning=False)
+        return Track(self.past, path, 0, False, self.memory)
 
     def further(self, fields: tuple[Field, ...]) -> "Track":
         """Pass the next fields of the current path."""
-        return replace(self, at=self.at + len(fields), past=self.past + fields)
+        past, at = self.past + fields, self.at + len(fields)
+        return Track(past, self.path, at, self.returning, self.memory)
 
     def go_on(self, calls: tuple[Call, ...] = (), to_end: bool = False) -> Decision:
         """Go to the next field of the current path, or to its end while it is free."""
         assert self.path is not None
         rest = self.path[self.at :]
-        place = (int(rest[1, 0]), int(rest[1, 1]))
+        x, y = rest[1].tolist()
+        place = (x, y)
         mode = Mode.REPLAN if calls else Mode.EXPLORE
         fields = len(rest) - 1 if to_end else 1
         return Decision(place, mode, self.further((place,)), self, calls, rest, self.past, fields)
 
     def go_back(self, calls: tuple[Call, ...] = ()) -> Decision:
         """Go back to the field before; at the start, stand."""
-        past = self.past if self.returning else simplified(self.past)
-        stood = replace(self, past=past, path=None, at=0, returning=True)
-        moved = replace(stood, past=past[:-1] or past)
+        past = self.past if self.returning else Past(simplified(self.past))
+        stood = Track(past, returning=True, memory=self.memory)
+        moved = stood._replace(past=past[:-1] or past)
         return Decision(moved.past[-1], Mode.RETURN, moved, stood, calls, None, past)

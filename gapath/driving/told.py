@@ -1,12 +1,13 @@
 """A drive told as events."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gapath.driving.drive import Driven
+from gapath.driving.navigation import Past
 from gapath.events import (
     Called,
     DriveFinished,
@@ -17,6 +18,8 @@ from gapath.events import (
     Stepped,
     TrialStarted,
 )
+from gapath.grid import Field
+from gapath.problem import no_path
 
 
 def drive_events(driven: Driven, cols: int, seed: int, trial: int, step: int) -> Iterator[Event]:
@@ -42,7 +45,8 @@ def drive_events(driven: Driven, cols: int, seed: int, trial: int, step: int) ->
     yield TrialStarted(step, trial, seed)
     layers, unknown = driven.sensor.range, driven.unknown_weight
     yield DriveStarted(step, trial, layers, unknown, driven.step_limit)
-    path = past = np.empty((0, 2), dtype=np.int32)
+    path = no_path()
+    past: Past | tuple[Field, ...] = ()
     for i, frame in enumerate(driven.frames):
         now, decision = step + i, frame.decision
         mode = Mode.EXPLORE
@@ -58,9 +62,10 @@ def drive_events(driven: Driven, cols: int, seed: int, trial: int, step: int) ->
                     call.plan.answer,
                 )
             new_path = path[:0] if decision.path is None else decision.path
-            new_past = np.array(decision.past, dtype=np.int32).reshape(-1, 2)
+            new_past = decision.past
             if not _continues(path, new_path) or not _extends(past, new_past):
-                yield PathsChanged(now, trial, new_path, new_past)
+                way_back = np.array(tuple(new_past), dtype=np.int32).reshape(-1, 2)
+                yield PathsChanged(now, trial, new_path, way_back)
             path, past = new_path, new_past
         fields = np.stack([frame.news % cols, frame.news // cols], axis=1).astype(np.int32)
         entries = frame.entries.astype(np.int32)
@@ -78,7 +83,7 @@ def _continues(before: NDArray[np.int32], now: NDArray[np.int32]) -> bool:
     )
 
 
-def _extends(before: NDArray[np.int32], now: NDArray[np.int32]) -> bool:
+def _extends(before: Sequence[Field], now: Sequence[Field]) -> bool:
     """Tell whether a past path is another, longer or shorter by at most one field."""
     shared = min(len(before), len(now))
-    return abs(len(before) - len(now)) <= 1 and np.array_equal(before[:shared], now[:shared])
+    return abs(len(before) - len(now)) <= 1 and before[:shared] == now[:shared]

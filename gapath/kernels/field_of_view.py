@@ -153,9 +153,11 @@ def remaining_cost(table: NDArray[np.int32], path: NDArray[np.int32], first: int
         The sum in units of 1 / SCALE, or -1 if an obstacle is on it or it cuts
         a corner.
     """
+    cols, weights = table.shape[1], table.ravel()
     total = np.int64(0)
     for i in range(first, path.shape[0]):
-        found = table[path[i, 1], path[i, 0]]
+        k = np.uint64(i)  # unsigned: numba looks for no sign
+        found = weights[np.uint64(path[k, 1] * cols + path[k, 0])]
         if found >= OBSTACLE:
             return -1
         total += found
@@ -209,11 +211,15 @@ def follow(
     for i in range(fields):
         x, y = np.int64(path[i, 0]), np.int64(path[i, 1])
         heading = heading_of(path[i + 1, 0] - x, path[i + 1, 1] - y)
+        old = count
         count = sense(
             true_table, known_table, seen, x, y, heading, layers, occlusion, news, count, least
         )
         looks[0, i], looks[1, i] = heading, count
-        if remaining_cost(known_table, path, i, rule) < 0:
+        learnt = i == 0
+        for k in range(old, count):
+            learnt |= news[1, k] >= OBSTACLE
+        if learnt and remaining_cost(known_table, path, i, rule) < 0:
             return i + 1
         if path[i + 1, 1] * true_table.shape[1] + path[i + 1, 0] == target:
             return i + 1

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.driving.navigation import Call, Decision, Situation, StreamOf
+from gapath.driving.navigation import Call, Decision, Past, Situation, StreamOf
 from gapath.driving.past_path import Track
 from gapath.errors import require
 from gapath.grid import Field
@@ -109,7 +109,7 @@ class Navigator:
     def begin(self, query: Situation) -> Track:
         """Begin a search without a path; raises InputError as `check` does."""
         self.check(query)
-        return Track((query.start,), memory=Repair(query))
+        return Track(Past((query.start,)), memory=Repair(query))
 
     def step(
         self, state: Track, query: Situation, news: NDArray[np.int64], streams: StreamOf

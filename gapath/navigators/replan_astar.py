@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.driving.navigation import Call, Decision, Situation, StreamOf
+from gapath.driving.navigation import Call, Decision, Past, Situation, StreamOf
 from gapath.driving.past_path import Track
 from gapath.kernels.field_of_view import remaining_cost
 from gapath.planning.shortest_path import shortest_path
@@ -23,7 +23,7 @@ class Navigator:
 
     def begin(self, query: Situation) -> Track:
         """Begin without a path."""
-        return Track((query.start,))
+        return Track(Past((query.start,)))
 
     def step(
         self, state: Track, query: Situation, news: NDArray[np.int64], streams: StreamOf

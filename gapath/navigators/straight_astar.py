@@ -6,12 +6,12 @@ goes straight on. A line, once taken, is followed until an obstacle is seen on i
 turns from one to the other only after it learnt something, so it never goes to and fro.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.driving.navigation import Call, Decision, Situation, StreamOf
+from gapath.driving.navigation import Call, Decision, Past, Situation, StreamOf
 from gapath.driving.past_path import Track
 from gapath.kernels.field_of_view import remaining_cost
 from gapath.kernels.lines import ONE_OBSTACLE, line_key
@@ -30,7 +30,7 @@ class Navigator:
 
     def begin(self, query: Situation) -> Track:
         """Begin without a path."""
-        return Track((query.start,), memory=False)
+        return Track(Past((query.start,)), memory=False)
 
     def step(
         self, state: Track, query: Situation, news: NDArray[np.int64], streams: StreamOf
@@ -42,10 +42,10 @@ class Navigator:
             return state.go_on(to_end=True)
         if line_key(table, *query.start, *query.target, rule) < ONE_OBSTACLE:
             line = polyline(np.array([query.start, query.target], dtype=np.int32))
-            return replace(state, memory=True).adopt(line).go_on(to_end=True)
+            return state._replace(memory=True).adopt(line).go_on(to_end=True)
         if free:
             return state.go_on()
         plan = shortest_path(query)
         calls = (Call("A" if state.returning else "C", 0, plan, plan.feasible),)
-        state = replace(state, memory=False)
+        state = state._replace(memory=False)
         return state.adopt(plan.path).go_on(calls) if plan.feasible else state.go_back(calls)

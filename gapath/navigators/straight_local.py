@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.driving.navigation import Call, Decision, Path, Situation, StreamOf
+from gapath.driving.navigation import Call, Decision, Past, Path, Situation, StreamOf
 from gapath.driving.past_path import Track
 from gapath.errors import Checks
 from gapath.grid import Field, Table
@@ -95,7 +95,7 @@ class Navigator:
 
     def begin(self, query: Situation) -> Track:
         """Begin without a path."""
-        return Track((query.start,), memory=Memory())
+        return Track(Past((query.start,)), memory=Memory())
 
     def step(
         self, state: Track, query: Situation, news: NDArray[np.int64], streams: StreamOf
@@ -107,11 +107,11 @@ class Navigator:
             memory = memory._replace(learnt=True)
         path, at = state.path, state.at
         if path is not None and at + 1 < len(path) and remaining_cost(table, path, at, rule) >= 0:
-            return replace(state, memory=memory).go_on()
+            return state._replace(memory=memory).go_on()
         if state.returning and (not memory.learnt or memory.passed < self.retreat_interval):
-            return replace(state, memory=memory._replace(passed=memory.passed + 1)).go_back()
+            return state._replace(memory=memory._replace(passed=memory.passed + 1)).go_back()
 
-        ahead = replace(state, memory=Memory(learnt=memory.learnt and not state.returning))
+        ahead = state._replace(memory=Memory(learnt=memory.learnt and not state.returning))
         line = staircase(query.start, query.target)
         blocked = table[line[:, 1], line[:, 0]] >= OBSTACLE
         if not blocked.any():
@@ -127,7 +127,7 @@ class Navigator:
         far = np.abs(line[first] - line[0]).max() >= nearest
         if far and not calls and not state.returning:  # it is known, but no square reaches it yet
             return ahead.adopt(line[: max(2, first - nearest // 2)]).go_on()
-        return replace(state, memory=Memory(memory.learnt, passed=1)).go_back(calls)
+        return state._replace(memory=Memory(memory.learnt, passed=1)).go_back(calls)
 
 
 def staircase(start: Field, target: Field) -> Path:

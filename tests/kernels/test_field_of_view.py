@@ -157,3 +157,14 @@ def test_to_follow_a_path_is_to_look_step_by_step(walk, rule, layers, occlusion)
     if count:
         assert (news[1, : ends[-1]] == table.ravel()[news[0, : ends[-1]]]).all()
         assert least[0] == table[seen].min()
+
+
+def test_who_follows_a_path_stops_where_an_obstacle_comes_in_sight():
+    values = np.full((9, 60), 0.5)
+    values[4, 40] = 1.0
+    table = GridMap("one", values).table
+    known, seen = np.full_like(table, table[0, 0]), np.zeros(table.shape, dtype=np.bool_)
+    path = np.array([(x, 4) for x in range(60)], dtype=np.int32)
+    news, looks = np.empty((2, table.size), dtype=np.int64), np.empty((2, 59), dtype=np.int64)
+    least = np.array([1 << 30])
+    assert follow(table, known, seen, path, 59, -1, 0, 5, False, news, looks, least) == 36

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.driving.navigation import Call, Decision, Situation, StreamOf
+from gapath.driving.navigation import Call, Decision, Past, Situation, StreamOf
 from gapath.driving.past_path import Track
 from gapath.errors import require
 from gapath.events import Mode
@@ -32,7 +32,7 @@ class Navigator:
 
     def begin(self, query: Situation) -> Track:
         """Remember how long to stand."""
-        return Track((query.start,), memory=self.steps)
+        return Track(Past((query.start,)), memory=self.steps)
 
     def step(
         self, state: Track, query: Situation, news: NDArray[np.int64], streams: StreamOf
