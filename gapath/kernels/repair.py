@@ -2,8 +2,10 @@
 
 The wall is followed from behind the cut back to the robot, not the other way: where it is met then
 changes little while the robot goes along it, so that the same hand gets round first, and the robot
-seldom turns back. A path that is all new only takes the place of pieces of the repaired one where
-that is worth a change of sides.
+seldom turns back. The path behind is only looked through, so that a repair takes as long as the way
+round. If that is nearly straight, the way round the other side takes its place wherever it is
+shorter, by however little. A path that is all new, from the robot to the target, is only looked for
+where the repaired one has grown so much since the last time that a change of sides may be worth it.
 """
 
 import numpy as np
@@ -12,20 +14,30 @@ from numpy.typing import NDArray
 from gapath.kernels.jit import kernel
 from gapath.kernels.memetic.crossing import cross
 from gapath.kernels.memetic.polygon import fields_of
+from gapath.kernels.memetic.rays import ray
 from gapath.kernels.memetic.rerouting import walked_path
-from gapath.kernels.memetic.shortening import cut_loops, pull, pull_there_and_back, running_cost
+from gapath.kernels.memetic.shortening import shortened
 from gapath.kernels.memetic.steps import X_BITS, X_MASK, may_step
 from gapath.kernels.memetic.walls import BOTH, NO_WAY, grown
+from gapath.kernels.units import ALLOW, OBSTACLE
 
 BEYOND = 8
 """Fields behind the cut, to where the wall is followed: nearer to the target one hand is first."""
 
-CHANGE, NEAR = 16, 4
-"""Fields that a new path has to save, and how many more than possible a repaired one may have
-for the least saving to do."""
+SLACK = 32
+"""Fields of the path behind the way round that are pulled straight together with it."""
+
+NEAR = 4
+"""How many fields more than possible the way round may have for the least saving to do."""
+
+CHANGE = 16
+"""Fields that a path which is all new has to save otherwise."""
 
 NO_LIMIT = 1 << 40
-"""Steps along walls."""
+"""Steps along walls; also a cost that is always low enough."""
+
+FREE = -1
+"""Instead of a cost: there is nothing to repair."""
 
 
 @kernel
@@ -48,60 +60,208 @@ def behind_cuts(table: NDArray[np.int32], path: NDArray[np.int32], at: int, rule
     int
         Index of the first field, ``at`` or later, from which the path is free to its end.
     """
+    cols, weights = table.shape[1], table.ravel()
     i = path.shape[0] - 1
-    u, v = np.int64(path[i, 0]), np.int64(path[i, 1])
     while i > at:
-        x, y = np.int64(path[i - 1, 0]), np.int64(path[i - 1, 1])
-        if not may_step(table, u, v, x, y, rule):
+        k = np.uint64(i - 1)  # unsigned: numba looks for no sign
+        if weights[np.uint64(path[k, 1] * cols + path[k, 0])] >= OBSTACLE:
             break
-        u, v = x, y
+        if rule != ALLOW:
+            x, y = np.int64(path[k, 0]), np.int64(path[k, 1])
+            if not may_step(table, np.int64(path[i, 0]), np.int64(path[i, 1]), x, y, rule):
+                break
         i -= 1
     return i
 
 
 @kernel
-def straightened(
+def last_beside(path: NDArray[np.int32], first: int, way: NDArray[np.uint32], count: int) -> int:
+    """Find the last field of a path that may be on a way or beside it: within its bounds.
+
+    Parameters
+    ----------
+    path : (n, 2) int32
+        Fields as (x, y).
+    first : int
+        Where to stop looking.
+    way : (m,) uint32
+        Fields (`gapath.kernels.memetic.steps`).
+    count : int
+        How many.
+
+    Returns
+    -------
+    int
+        Its index; ``first`` if there is none behind that one.
+    """
+    left = right = np.int64(way[0] & X_MASK)
+    top = bottom = np.int64(way[0] >> X_BITS)
+    for i in range(1, count):
+        x, y = np.int64(way[i] & X_MASK), np.int64(way[i] >> X_BITS)
+        left, right, top, bottom = min(left, x), max(right, x), min(top, y), max(bottom, y)
+    i = path.shape[0] - 1
+    while i > first:
+        x, y = np.int64(path[i, 0]), np.int64(path[i, 1])
+        if left - 1 <= x <= right + 1 and top - 1 <= y <= bottom + 1:
+            break
+        i -= 1
+    return i
+
+
+@kernel
+def goes_straight_on(
     table: NDArray[np.int32],
-    path: NDArray[np.uint32],
-    count: int,
+    path: NDArray[np.int32],
+    i: int,
+    points: NDArray[np.int32],
+    costs: NDArray[np.int64],
+    size: int,
     rule: int,
-    well: bool,
-    order: NDArray[np.int32],
-) -> tuple[int, int, NDArray[np.uint32]]:
-    """Cut off a path's loops and pull it straight.
+) -> bool:
+    """Let the last ray of a polygon end where a path ends, if it is free then and no dearer.
 
     Parameters
     ----------
     table : (rows, cols) int32
         The known map.
-    path : (n,) uint32
-        Fields (`gapath.kernels.memetic.steps`); changed in place.
-    count : int
-        How many.
+    path : (n, 2) int32
+        Fields as (x, y), free from ``i`` on.
+    i : int
+        Where on it the polygon ends.
+    points : (m, 2) int32
+        Vertices; the last one is changed in place.
+    costs : (m,) int64
+        What their rays cost; changed in place.
+    size : int
+        How many vertices there are, at least 2.
     rule : int
         Corner-cutting rule.
-    well : bool
-        Also from the target back, and again.
-    order : (rows * cols,) int32
-        Anything; overwritten.
 
     Returns
     -------
-    count, cost : int
-        How many fields there are, and what they cost, the first one left out.
-    path : (m,) uint32
-        Where they are.
+    bool
+        Whether it ends there now.
     """
-    count = cut_loops(table, path, count, order, rule)
-    sums = running_cost(table, path, count)
-    points, costs = np.empty((count, 2), dtype=np.int32), np.empty(count, dtype=np.int64)
-    size, cost = pull(table, path, count, sums, rule, points, costs)
-    if well and size > 2:
-        size, cost, points, costs, path = pull_there_and_back(
-            table, points, costs, size, rule, path
-        )
-    count, path = fields_of(table, points, size, False, rule, path)
-    return count, cost, path
+    cols, weights, last = table.shape[1], table.ravel(), path.shape[0] - 1
+    along = costs[size - 2]
+    for k in range(np.uint64(i + 1), np.uint64(last + 1)):  # unsigned: numba looks for no sign
+        along += weights[np.uint64(path[k, 1] * cols + path[k, 0])]
+    x, y = np.int64(points[size - 2, 0]), np.int64(points[size - 2, 1])
+    u, v = np.int64(path[last, 0]), np.int64(path[last, 1])
+    blocked, through = ray(table, x, y, u, v, rule)
+    if blocked or through > along:
+        return False
+    points[size - 1, 0], points[size - 1, 1], costs[size - 2] = u, v, through
+    return True
+
+
+@kernel
+def all_new(
+    table: NDArray[np.int32],
+    x: int,
+    y: int,
+    target_x: int,
+    target_y: int,
+    rule: int,
+    enough: int,
+    order: NDArray[np.int32],
+) -> tuple[int, int, NDArray[np.uint32]]:
+    """Find a path along walls, and pull it straight.
+
+    Parameters
+    ----------
+    table, target_x, target_y, rule, order
+        As of `repaired`.
+    x, y : int
+        Where it begins.
+    enough : int
+        A cost that is low enough.
+
+    Returns
+    -------
+    count : int
+        How many fields it has, or NO_WAY.
+    cost : int
+        The sum of their weights but the first one's, in units of 1 / SCALE.
+    path : (n,) uint32
+        Fields (`gapath.kernels.memetic.steps`).
+    """
+    stream = np.zeros(4, dtype=np.uint64)  # nothing is drawn from it
+    way, none = np.empty(512, dtype=np.uint32), np.empty(0, dtype=np.int64)
+    ends = (np.int64(x), np.int64(y), np.int64(target_x), np.int64(target_y))
+    count, _, way = walked_path(table, ends, rule, BOTH, NO_LIMIT, False, False, way, stream)
+    if count == NO_WAY:
+        return count, np.int64(0), way
+    size, cost, points, _ = shortened(table, way, count, rule, enough, False, order, none)
+    count, way = fields_of(table, points, size, False, rule, way)
+    return count, cost, way
+
+
+@kernel
+def led_round(
+    table: NDArray[np.int32],
+    path: NDArray[np.int32],
+    at: int,
+    behind: int,
+    rule: int,
+    least: int,
+    order: NDArray[np.int32],
+) -> tuple[NDArray[np.int32], int]:
+    """Lead a path round what has cut it.
+
+    Parameters
+    ----------
+    table, path, at, rule, least, order
+        As of `repaired`.
+    behind : int
+        From where on the path is free (`behind_cuts`).
+
+    Returns
+    -------
+    path : (m, 2) int32
+        Fields from the robot's to the path's end; none if there is no way, which is proved.
+    cost : int
+        The sum of their weights but the first one's, in units of 1 / SCALE.
+    """
+    n = path.shape[0]
+    x, y = np.int64(path[at, 0]), np.int64(path[at, 1])
+    i = min(behind + BEYOND, n - 1)
+    u, v = np.int64(path[i, 0]), np.int64(path[i, 1])
+    stream = np.zeros(4, dtype=np.uint64)  # nothing is drawn from it
+    way = np.empty(512, dtype=np.uint32)
+    count, _, way = walked_path(table, (x, y, u, v), rule, BOTH, NO_LIMIT, False, True, way, stream)
+    if count == NO_WAY:  # nor to the end, to which the path is free from there
+        return np.empty((0, 2), dtype=np.int32), np.int64(0)
+    end = min(last_beside(path, i, way, count) + SLACK, n - 1)
+    way = grown(way, count, count + end - i)
+    for k in range(i + 1, end + 1):
+        way[count] = (np.int64(path[k, 1]) << X_BITS) + path[k, 0]
+        count += 1
+    u, v = np.int64(path[end, 0]), np.int64(path[end, 1])
+    lower = table[v, u] + least * (max(abs(u - x), abs(v - y)) - 1)
+    none = np.empty(0, dtype=np.int64)
+    size, total, points, costs = shortened(table, way, count, rule, lower, False, order, none)
+    if lower < total <= lower + NEAR * least:  # the other side may be the better one
+        more, _, other = all_new(table, x, y, u, v, rule, NO_LIMIT, order)
+        count, way = fields_of(table, points, size, False, rule, way)
+        child = np.empty(count + more, dtype=np.uint32)
+        count, less, _ = cross(table, way, count, other, more, order, child)
+        if less < total:
+            size, total, points, costs = shortened(
+                table, child, count, rule, lower, False, order, none
+            )
+    if goes_straight_on(table, path, end, points, costs, size, rule):
+        end = n - 1
+    count, way = fields_of(table, points, size, False, rule, way)
+    cost = costs[: size - 1].sum()
+    new = np.empty((count + n - 1 - end, 2), dtype=np.int32)
+    for k in range(count):
+        new[k, 0], new[k, 1] = way[k] & X_MASK, way[k] >> X_BITS
+    for k in range(end + 1, n):
+        new[count, 0], new[count, 1] = path[k, 0], path[k, 1]
+        cost += table[path[k, 1], path[k, 0]]
+        count += 1
+    return new, cost
 
 
 @kernel
@@ -115,8 +275,9 @@ def repaired(
     target_y: int,
     rule: int,
     least: int,
+    expected: int,
     order: NDArray[np.int32],
-) -> tuple[NDArray[np.int32], int]:
+) -> tuple[NDArray[np.int32], int, int]:
     """Repair a path from the robot's field to the target.
 
     Parameters
@@ -133,6 +294,8 @@ def repaired(
         Corner-cutting rule.
     least : int
         The least weight of any free field but these two.
+    expected : int
+        What a new path cost, when one was last looked for, from the beginning of the path.
     order : (rows * cols,) int32
         Anything; overwritten.
 
@@ -141,40 +304,41 @@ def repaired(
     path : (m, 2) int32
         Fields from the robot's to the target; none if there is no way, which is proved.
     cost : int
-        The sum of their weights, in units of 1 / SCALE.
+        The sum of their weights, in units of 1 / SCALE; FREE if the path is not cut.
+    expected : int
+        What a new path costs, as far as is known.
     """
     x, y = np.int64(robot_x), np.int64(robot_y)
     end_x, end_y = np.int64(target_x), np.int64(target_y)
-    u, v = end_x, end_y
-    n = path.shape[0]
-    behind = n
-    if n:
-        behind = min(behind_cuts(table, path, at, rule) + BEYOND, n - 1)
-        u, v = np.int64(path[behind, 0]), np.int64(path[behind, 1])
-    stream = np.zeros(4, dtype=np.uint64)  # nothing is drawn from it
-    way = np.empty(n + 256, dtype=np.uint32)
-    count, _, way = walked_path(table, (x, y, u, v), rule, BOTH, NO_LIMIT, False, True, way, stream)
-    if count == NO_WAY:  # nor to the target, to which the path is free from there
-        return np.empty((0, 2), dtype=np.int32), 0
-    way = grown(way, count, count + n - behind)
-    for i in range(behind + 1, n):
-        way[count] = (np.int64(path[i, 1]) << X_BITS) + path[i, 0]
-        count += 1
-    count, cost, way = straightened(table, way, count, rule, True, order)
-
     lower = table[end_y, end_x] + least * (max(abs(end_x - x), abs(end_y - y)) - 1)
-    enough = 1 if cost <= lower + NEAR * least else CHANGE * least + 1
-    if cost - enough >= lower:
-        new = np.empty(256, dtype=np.uint32)
-        more, _, new = walked_path(
-            table, (x, y, end_x, end_y), rule, BOTH, NO_LIMIT, False, False, new, stream
-        )
-        more, _, new = straightened(table, new, more, rule, False, order)
-        child = np.empty(count + more, dtype=np.uint32)
-        more, less, _ = cross(table, way, count, new, more, order, child)
-        if less <= cost - enough:
-            way, count, cost = child, more, less
+    if path.shape[0] == 0:
+        count, cost, way = all_new(table, x, y, end_x, end_y, rule, lower, order)
+        return unpacked(way, max(count, 0)), cost + table[y, x], cost
+    behind = behind_cuts(table, path, at, rule)
+    if behind == at:
+        return path, np.int64(FREE), expected
+    for i in range(1, at + 1):
+        expected -= table[path[i, 1], path[i, 0]]
+    new, cost = led_round(table, path, at, behind, rule, least, order)
+    if new.shape[0] == 0:
+        return new, cost, cost
+    enough = cost - CHANGE * least
+    if enough > max(lower, expected):
+        more, expected, other = all_new(table, x, y, end_x, end_y, rule, NO_LIMIT, order)
+        count = new.shape[0]
+        way, child = np.empty(count, dtype=np.uint32), np.empty(count + more, dtype=np.uint32)
+        for i in range(count):
+            way[i] = (np.int64(new[i, 1]) << X_BITS) + new[i, 0]
+        count, expected, _ = cross(table, way, count, other, more, order, child)
+        if expected < enough:
+            new, cost = unpacked(child, count), expected
+    return new, cost + table[y, x], expected
+
+
+@kernel(inner=True)
+def unpacked(path: NDArray[np.uint32], count: int) -> NDArray[np.int32]:
+    """Give fields (`gapath.kernels.memetic.steps`) as (x, y)."""
     fields = np.empty((count, 2), dtype=np.int32)
     for i in range(count):
-        fields[i, 0], fields[i, 1] = way[i] & X_MASK, way[i] >> X_BITS
-    return fields, cost + np.int64(table[y, x])
+        fields[i, 0], fields[i, 1] = path[i] & X_MASK, path[i] >> X_BITS
+    return fields

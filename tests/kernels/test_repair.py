@@ -1,14 +1,17 @@
 """Paths that were cut and are repaired, against what must hold of any path."""
 
+from itertools import product
+
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from strategies import problems
 
 from gapath.grid import GridMap
 from gapath.kernels.field_of_view import remaining_cost
-from gapath.kernels.repair import behind_cuts, repaired
+from gapath.kernels.memetic.rays import ray
+from gapath.kernels.repair import FREE, behind_cuts, goes_straight_on, last_beside, repaired
 from gapath.planning.shortest_path import shortest_path
 from gapath.problem import Problem
 
@@ -45,10 +48,14 @@ def cut_paths(draw):
 def test_a_repaired_path_is_free_and_there_is_one_wherever_there_can_be(case):
     problem, old, at = case
     grid, rule = problem.map, int(problem.corner_cutting)
-    for path, robot in ((old, at), (NOTHING, 0)):
-        new, cost = repaired(
-            grid.table, path, robot, *problem.start, *problem.target, rule, 0, order_of(grid)
-        )
+    ends = (*problem.start, *problem.target)
+    weights = (0, grid.least_weight(problem.start, problem.target))
+    for (path, robot), least in product(((old, at), (NOTHING, 0)), weights):
+        new, cost, _ = repaired(grid.table, path, robot, *ends, rule, least, 0, order_of(grid))
+        if cost == FREE:
+            assert np.array_equal(new, path)
+            assert len(path) and remaining_cost(grid.table, path, robot, rule) >= 0
+            continue
         assert (len(new) > 0) == shortest_path(problem).feasible
         if len(new):
             assert tuple(new[0]) == problem.start and tuple(new[-1]) == problem.target
@@ -67,9 +74,44 @@ def test_the_end_of_a_path_is_free_from_behind_its_cuts(case):
     assert behind == at or remaining_cost(table, path, behind - 1, rule) < 0
 
 
-def route(grid, path, at, start, target):
+def some_fields(most):
+    fields = st.tuples(st.integers(1, 9), st.integers(1, 9))
+    return st.lists(fields, min_size=1, max_size=most)
+
+
+@given(some_fields(9), some_fields(2), st.integers(0, 8))
+@example([(9, 9), (6, 6)], [(5, 5)], 0)
+@example([(9, 9), (4, 4)], [(5, 5)], 0)
+def test_what_of_a_path_is_beside_a_way_is_found_by_its_bounds(path, way, first):
+    path, way, first = np.array(path, np.int32), np.array(way, np.uint32), min(first, len(path) - 1)
+    low, high = way.min(axis=0) - 1, way.max(axis=0) + 1
+    inside = np.flatnonzero(((low <= path) & (path <= high)).all(axis=1))
+    packed = (way[:, 1] << 16) + way[:, 0]
+    assert last_beside(path, first, packed, len(way)) == max([first, *inside])
+
+
+@given(cut_paths())
+def test_a_last_ray_goes_straight_on_if_it_is_free_and_no_dearer(case):
+    problem, path, at = case
+    table, rule = problem.map.table, int(problem.corner_cutting)
+    behind = behind_cuts(table, path, at, rule) if len(path) else 0
+    if behind >= len(path) - 1:
+        return
+    i = behind + 1
+    points = path[[behind, i]].copy()
+    costs = np.array([table[path[i, 1], path[i, 0]], 0], dtype=np.int64)
+    along = int(table[path[i:, 1], path[i:, 0]].sum())
+    (x, y), (u, v) = path[behind].tolist(), path[-1].tolist()
+    blocked, through = ray(table, x, y, u, v, rule)
+    goes = blocked == 0 and through <= along
+    assert goes_straight_on(table, path, i, points, costs, 2, rule) == goes
+    assert points[1].tolist() == (path[-1] if goes else path[i]).tolist()
+    assert costs[0] == (through if goes else table[path[i, 1], path[i, 0]])
+
+
+def route(grid, path, at, start, target, expected=0):
     least = int(grid.table.min())
-    return repaired(grid.table, path, at, *start, *target, 0, least, order_of(grid))
+    return repaired(grid.table, path, at, *start, *target, 0, least, expected, order_of(grid))[:2]
 
 
 def test_what_lies_behind_the_next_wall_stays():
@@ -94,5 +136,10 @@ def test_it_changes_sides_only_where_that_saves_enough(longer, keeps):
     down, up = np.stack([left, corner], axis=1), np.stack([right, corner], axis=1)[::-1]
     around = np.concatenate([[start], down, [[75, end]], up, [[85, 50]]]).astype(np.int32)
     weights[around[2, 1], around[2, 0]] = 1.0
-    new, _ = route(GridMap("wall", weights), around, 0, start, target)
+    grid = GridMap("wall", weights)
+    new, _ = route(grid, around, 0, start, target)
     assert (new[:, 1].max() > 60) == keeps
+    kept, cost = route(grid, around, 0, start, target, expected=1 << 30)
+    assert kept[:, 1].max() > 60
+    again, _ = route(grid, around, 0, start, target, expected=cost)  # it has not grown since
+    assert np.array_equal(again, kept)
