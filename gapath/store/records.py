@@ -234,13 +234,14 @@ def read_record(folder: Path) -> RunRecord:
     RunRecord
         Its sizes of files are compared; hashing every log would take longer than reading it.
     """
-    found = _read(folder)
-    end = time.monotonic() + _PATIENCE
-    while found.fault and found.state in WHOLE and is_locked(folder / LOCK):
-        if time.monotonic() > end:
-            break
-        time.sleep(0.005)  # a run that was done again takes its place: a matter of moments
+    found, end = _read(folder), time.monotonic() + _PATIENCE
+    while found.fault and found.state in WHOLE and time.monotonic() < end:
+        # A run that is done again may be about to take its place, or have done so meanwhile.
+        settled, before = not is_locked(folder / LOCK), found
         found = _read(folder)
+        if settled and found == before:
+            break
+        time.sleep(0.002)
     return found
 
 

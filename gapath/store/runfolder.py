@@ -8,6 +8,7 @@ import fcntl
 import hashlib
 import os
 import shutil
+import stat
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -80,6 +81,8 @@ class RunFolder:
             flags = os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK
             lock = os.open(self.path / LOCK, flags, 0o666)
         try:
+            regular = stat.S_ISREG(os.fstat(lock).st_mode)
+            require(regular, self.path / LOCK, "no regular file", "one, or none: a run makes it")
             self._hold(lock)
             yield
         finally:

@@ -73,7 +73,8 @@ def test_a_run_that_another_process_holds_is_left_alone(gapath, tmp_path):
     run = ["map=kg18_test1", "planner=astar", "recorder=none"]
     gapath(*run)
     with runfolder.RunFolder(only(tmp_path / "out" / "plan")).lock():
-        assert "another process" in gapath(*run, "force=true")[1]
+        code, text, _ = gapath(*run, "force=true")
+        assert (code, "another process" in text) == (cli.BUSY, True)
 
 
 def test_a_walled_in_target_is_a_row_not_a_crash(gapath, tmp_path):
