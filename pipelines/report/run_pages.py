@@ -22,7 +22,7 @@ from gapath.pipelines.reading.logs import has_log
 from gapath.pipelines.report.found_by import found_by
 from gapath.pipelines.report.stills import MOST_BYTES, MOST_RUNS, newest_logs, stills_of
 from gapath.recorders.mcap import FILE
-from gapath.store.durable import write_whole
+from gapath.store.durable import new_file, write_whole
 from gapath.store.records import MANIFEST, RunRecord
 from gapath.store.settings import written
 from gapath.store.status import STATUS
@@ -95,11 +95,12 @@ def write_run_pages(
     for path, content in zip(written, (style(), script()), strict=True):
         write_whole(path, content.encode())
     for name, text in chain(_pages(folder, runs, trials, rates), _lists(runs, rates, lists)):
-        (folder / name).write_bytes(text.encode())
+        with new_file(folder / name) as file:
+            file.write(text.encode())
         written.append(folder / name)
-    for path in set(folder.glob("*.html")) - set(written):
-        with path.open("rb") as file:
-            ours = _MARK in file.read(500)
+    for path in filter(Path.is_file, set(folder.glob("*.html")) - set(written)):
+        with path.open("rb") as page:
+            ours = _MARK in page.read(500)
         if ours:
             path.unlink()
     return written

@@ -1,5 +1,6 @@
 """The pages of runs: what they say, where they lead to, and what is left of earlier ones."""
 
+import os
 import re
 import statistics
 from dataclasses import replace
@@ -86,11 +87,16 @@ def test_pages_of_an_earlier_report_go_but_nothing_else(tmp_path, make_run):
     lists = set(runs.glob("of-*.html"))
     assert len(lists) == 1
     (runs / "notes.html").write_text("<p>mine</p>")
+    os.mkfifo(runs / "pipe.html")
+    (runs / f"{first.name}.html").unlink()
+    (runs / f"{first.name}.html").symlink_to("notes.html")
     for path in other.iterdir():
         path.unlink()
     page_of(tmp_path, first.name)
     left = {path.name for path in runs.iterdir()}
-    assert left == {f"{first.name}.html", "index.html", "page.css", "page.js", "notes.html"}
+    own = {f"{first.name}.html", "index.html", "page.css", "page.js"}
+    assert left == own | {"notes.html", "pipe.html"}
+    assert (runs / "notes.html").read_text() == "<p>mine</p>"
 
 
 def test_rows_of_the_same_runs_lead_to_one_list(tmp_path, make_run):
