@@ -93,8 +93,9 @@ def _kind_and_settings(
         return str(kind), checked(target, values, where)
     except InputError as error:
         name = error.where.removeprefix(f"{where}.")
-        others = with_setting(group, name)
-        if not others or name in (field.name for field in dataclasses.fields(target)):
+        own = name in (field.name for field in dataclasses.fields(target))
+        others = "" if own else with_setting(group, name)
+        if not others:
             raise
         right = f"{error.expected}; it is a setting of {others}"
         raise InputError(error.where, error.value, right) from None
@@ -194,6 +195,8 @@ def checked(target: type[Any], values: object, where: str) -> dict[str, Any]:
         inner = [n for n in names if dataclasses.is_dataclass(hints[n])]
         types = [(n, Any if n in inner else hints[n]) for n in names]
         schema = dataclasses.make_dataclass(target.__name__, types)
+        for name, value in values.items():
+            _check_kind(target, hints.get(name), value, f"{prefix}{name}")
         given = {name: _whole(hints.get(name), value) for name, value in values.items()}
         merged = OmegaConf.merge(OmegaConf.structured(schema), given)
         for name in names:
@@ -221,6 +224,26 @@ def _without_sign_of_zero(value: Any) -> Any:
     if isinstance(value, list):
         return [_without_sign_of_zero(item) for item in value]
     return 0.0 if isinstance(value, float) and value == 0 else value
+
+
+def _check_kind(target: type[Any], hint: Any, value: Any, where: str) -> None:
+    """Raise InputError for what OmegaConf takes, or refuses without a name.
+
+    To it 2 is true, a list within one of numbers is none of its business, and of a mapping in
+    place of a list it names a key.
+    """
+    allowed = get_args(hint) or (hint,)
+    if bool in allowed:
+        good = isinstance(value, bool | list | dict | None) or str(value).lower() in _TRUTHS
+        require(good, where, repr(value), "true or false")
+    lists = [kind for kind in (hint, *allowed) if get_origin(kind) is list]
+    if lists and not {Any, dict} & {*allowed, *get_args(lists[0])}:
+        inner = value if isinstance(value, list) else ()
+        good = not isinstance(value, dict) and not any(isinstance(v, list | dict) for v in inner)
+        require(good, where, repr(value), _type_name(target, where.rpartition(".")[2]))
+
+
+_TRUTHS = ("0", "1", "false", "true", "no", "yes", "off", "on", "n", "y")
 
 
 def _whole(hint: Any, value: Any) -> Any:

@@ -2,6 +2,7 @@
 
 import argparse
 import contextlib
+import re
 import shlex
 import traceback
 from collections.abc import Iterator, Sequence
@@ -10,17 +11,21 @@ from typing import Any, NoReturn
 
 import yaml
 from hydra import compose, initialize_config_dir
+from hydra._internal.core_plugins.file_config_source import FileConfigSource
 from hydra._internal.utils import get_args_parser
 from hydra.core.global_hydra import GlobalHydra
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override
 from hydra.errors import HydraException, MissingConfigException, OverrideParseException
+from hydra.plugins.config_source import ConfigResult
 from omegaconf import DictConfig
 from omegaconf.errors import OmegaConfBaseException
 
-from gapath.discovery import OFFERS, with_setting
-from gapath.errors import InputError, did_you_mean, one_of
+from gapath.discovery import OFFERS, kinds, with_setting, yaml_names
+from gapath.errors import InputError, did_you_mean, one_of, require
 from gapath.running.config import conf_folder
+from gapath.store.settings import plain_yaml
+from gapath.task import find_task
 
 BAD_CONFIGURATION = (InputError, HydraException, OmegaConfBaseException)
 """What is raised where a command line or a configuration is wrong."""
@@ -36,6 +41,64 @@ def arguments() -> argparse.Namespace:
     parser.error = refuse
     given: argparse.Namespace = parser.parse_args()
     return given
+
+
+class Bounded(FileConfigSource):  # type: ignore[misc]
+    """Hydra's reader of YAMLs; of a user's or a stranger's first looks whether it is one."""
+
+    def load_config(self, config_path: str) -> ConfigResult:
+        """Read a YAML; raises InputError if `plain_yaml` does, or it is no regular file."""
+        if not Path(self.path).is_relative_to(conf_folder()):
+            file = Path(self.path, self._normalize_file_name(config_path))
+            plain_yaml(file, str(file), "a YAML of settings")
+        return super().load_config(config_path)
+
+
+def check_used(words: Sequence[str], task: str) -> None:
+    """Raise InputError if something was set on the command line that the task does not use."""
+    find_task(task)
+    users: dict[str, list[str]] = {}
+    for name in kinds("task"):
+        for group in find_task(name).groups:
+            users.setdefault(group, []).append(name)
+    for word in words:
+        key, _, value = word.lstrip("+~").partition("=")
+        group = key.partition(".")[0]
+        able = users.get(group, [task])
+        good = " or ".join(f"task={name}" for name in able)
+        expected = f"{good}, to which the group {group} belongs"
+        require(task in able, key, f"{value or repr('')} with task={task}", expected)
+
+
+def check_once(words: Sequence[str]) -> None:
+    """Raise InputError if something is set twice: Hydra would take the last."""
+    given: dict[str, str] = {}
+    for word in words:
+        key, _, value = word.lstrip("+~").partition("=")
+        require(key not in given, key, f"{given.get(key)} and {value}", "one value")
+        given[key] = value
+
+
+def check_own(words: Sequence[str], runtime: DictConfig) -> None:
+    """Raise InputError if a YAML was chosen by anything but its name.
+
+    Or by a name that gapath has first, if it is the user's own.
+    """
+    chosen = [(group, str(name)) for group, name in runtime.choices.items() if name is not None]
+    for key, _, value in (word.lstrip("+").partition("=") for word in words):
+        if key in OFFERS and value.startswith("["):  # several at once, which are no choice to Hydra
+            chosen += [(key, name.strip()) for name in value.strip("[]").split(",")]
+    for group, name in chosen:
+        good = not name or _CHOICE.fullmatch(name) is not None
+        require(good, group, name, "the name of a YAML, without a folder and an ending")
+    for source in runtime.config_sources:
+        for group, name in runtime.choices.items():
+            if source["provider"] == "command-line" and name in yaml_names(group):
+                file = Path(source["path"], group, f"{name}.yaml")
+                require(not file.exists(), group, file, f"another name: gapath has its own {name}")
+
+
+_CHOICE = re.compile(r"(?:[^./\\]+/)*[^./\\]+")
 
 
 def explain(error: BaseException, words: Sequence[str], sweep: bool) -> str | None:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from hydra import main as hydra_main
+from hydra._internal.sources_registry import SourcesRegistry
 from hydra.core.config_search_path import ConfigSearchPath
 from hydra.core.global_hydra import GlobalHydra
 from hydra.core.hydra_config import HydraConfig
@@ -20,14 +21,22 @@ from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
 
 import gapath
-from gapath.commands.refusal import BAD_CONFIGURATION, arguments, explain
-from gapath.discovery import component_of, conf_packages, kinds, yaml_names
+from gapath.commands.refusal import (
+    BAD_CONFIGURATION,
+    Bounded,
+    arguments,
+    check_once,
+    check_own,
+    check_used,
+    explain,
+)
+from gapath.discovery import component_of, conf_packages
 from gapath.errors import FAULTS, InputError, printable, require
 from gapath.running.config import HOW, Run, conf_folder, make_run
 from gapath.running.experiment import Execution, execute, run_folder
+from gapath.running.work import told, work
 from gapath.store.runfolder import RunFolder
 from gapath.store.status import RunState
-from gapath.task import find_task
 
 BAD_INPUT, FAILED, BUSY, INTERRUPTED = 2, 1, 75, 130
 
@@ -59,24 +68,23 @@ class SweepCheck(Callback):  # type: ignore[misc]
         compose = loader.load_sweep_config
         composed: dict[tuple[str, ...], DictConfig] = {}
         folders: dict[Path, list[str]] = {}
+        works: list[tuple[int, int]] = []
         try:
             params = config.hydra.sweeper.params or {}  # items() resolves them, as the sweeper does
             words = every = [*(f"{key}={value}" for key, value in params.items()), *words]
             parser = OverridesParser.create(config_loader=loader)
             for words in BasicSweeper.split_arguments(parser.parse_overrides(every), None)[0]:
                 whole = compose(config, words)
-                runtime = whole.hydra.runtime
-                own = OmegaConf.masked_copy(whole, [key for key in whole if key != "hydra"])
-                check_used(words, own.task)
-                check_own(runtime)
-                run = make_run(own, runtime.choices, settings_of(words))
+                run = run_of(whole, whole.hydra.runtime, words)
                 check_apart(run_folder(run).path, words, folders)
+                works.append((run.trials, work_of(run)))
                 if len(composed) < KEPT:
                     composed[tuple(words)] = whole
             for folder in folders:
                 RunFolder(folder).create_parent()
         except FAULTS as error:
             sys.exit(refuse(error, words, sweep=True))
+        warn(told(works))
         # Hydra would compose every job twice more: to see whether it can be composed, and to do it.
         BasicSweeper.validate_batch_is_legal = lambda self, batch: None
         loader.load_sweep_config = lambda config, words: (
@@ -102,9 +110,9 @@ def job(config: DictConfig) -> int:
     words = typed(hydra)
     os.chdir(hydra.runtime.cwd)  # where paths are typed, also with hydra.job.chdir=true
     try:
-        check_used(words, config.task)
-        check_own(hydra.runtime)
-        run = make_run(config, hydra.runtime.choices, settings_of(words))
+        run = run_of(config, hydra.runtime, words)
+        if not sweep:
+            warn(told([(run.trials, work_of(run))]))
         execution = execute(run, command(words, hydra.runtime.config_sources))
     except FAULTS as error:
         return refuse(error, words, sweep)
@@ -118,35 +126,49 @@ def job(config: DictConfig) -> int:
     return BUSY if execution.state is RunState.BUSY else 0
 
 
+def run_of(config: DictConfig, runtime: DictConfig, words: Sequence[str]) -> Run:
+    """Check one job's settings and make its run.
+
+    Parameters
+    ----------
+    config : DictConfig
+        As Hydra composed it.
+    runtime : DictConfig
+        What Hydra says of how it did so.
+    words : sequence of str
+        What was set on the command line.
+
+    Returns
+    -------
+    Run
+        Ready to be executed.
+
+    Raises
+    ------
+    InputError
+        For anything that is wrong.
+    """
+    check_used(words, config.task)
+    check_own(words, runtime)
+    own = OmegaConf.masked_copy(config, [str(key) for key in config if key != "hydra"])
+    return make_run(own, dict(runtime.choices), settings_of(words))
+
+
 def typed(hydra: DictConfig) -> list[str]:
     """Give what was set on the command line, ``${name}`` as it was typed."""
     words: Any = OmegaConf.to_container(hydra.overrides.task)
     return list(map(str, words))
 
 
-def check_used(words: Sequence[str], task: str) -> None:
-    """Raise InputError if something was set on the command line that the task does not use."""
-    find_task(task)
-    users: dict[str, list[str]] = {}
-    for name in kinds("task"):
-        for group in find_task(name).groups:
-            users.setdefault(group, []).append(name)
-    for word in words:
-        key, _, value = word.lstrip("+~").partition("=")
-        group = key.partition(".")[0]
-        able = users.get(group, [task])
-        good = " or ".join(f"task={name}" for name in able)
-        expected = f"{good}, to which the group {group} belongs"
-        require(task in able, key, f"{value or repr('')} with task={task}", expected)
+def work_of(run: Run) -> int:
+    """Bound what each trial of a run does."""
+    return work(run.settings, run.task.groups, run.problem.map.weights.size)
 
 
-def check_own(runtime: DictConfig) -> None:
-    """Raise InputError if a YAML of the user's own was chosen by a name that gapath has first."""
-    for source in runtime.config_sources:
-        for group, name in runtime.choices.items():
-            if source["provider"] == "command-line" and name in yaml_names(group):
-                file = Path(source["path"], group, f"{name}.yaml")
-                require(not file.exists(), group, file, f"another name: gapath has its own {name}")
+def warn(line: str | None) -> None:
+    """Tell something that is no error, if there is anything to tell."""
+    if line is not None:
+        print(f"gapath: {line}", file=sys.stderr, flush=True)
 
 
 def settings_of(words: Sequence[str]) -> list[str]:
@@ -255,6 +277,7 @@ def main() -> None:
     nothing is wrong but another process does a job. Of a sweep the first job that failed decides.
     """
     Plugins.instance().register(OtherConfigurations)
+    SourcesRegistry.instance().types["file"] = Bounded
     os.environ["HYDRA_FULL_ERROR"] = "1"  # errors come here instead of being printed
     words: list[str] = []
     failed: list[int] = []
@@ -270,6 +293,7 @@ def main() -> None:
             return
         given = arguments()
         words, sweep = given.overrides, given.multirun
+        check_once(words)
         hydra_main(version_base="1.3", config_path=conf_folder(), config_name="config")(task)()
     except KeyboardInterrupt:
         sys.exit(INTERRUPTED)

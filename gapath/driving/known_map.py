@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from gapath.components import build
 from gapath.discovery import reader_of, yaml_values
+from gapath.errors import InputError
 from gapath.grid import Field, GridMap, Table
 from gapath.kernels.field_of_view import follow, sense
 from gapath.kernels.units import OBSTACLE, SCALE
@@ -200,7 +201,10 @@ def read_known_map(path: str) -> GridMap:
     values = yaml_values("map", kind) | {"path": path}
     if "unknown" in values:
         values["unknown"] = "free"
-    grid: GridMap = build("map", values, KNOWN).read()
+    try:
+        grid: GridMap = build("map", values, KNOWN).read()
+    except InputError as error:
+        raise InputError(f"{KNOWN}, {error.where}", error.value, error.expected) from error
     return grid
 
 

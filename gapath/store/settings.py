@@ -220,28 +220,18 @@ def read_settings(path: Path) -> dict[str, Value]:
     InputError
         If it cannot be read, or holds something else.
     """
-    try:
-        regular = path.is_file()  # a pipe would wait for somebody who writes
-        require(regular, path.name, "nothing" if not path.exists() else "no file", "a file")
-        size = path.stat().st_size
-        require(size <= MAX_YAML_BYTES, path.name, f"{size} bytes", f"at most {MAX_YAML_BYTES}")
-        text = path.read_text("utf-8")
-    except InputError:
-        raise
-    except (OSError, ValueError) as error:
-        raise InputError(path.name, type(error).__name__, "readable YAML") from error
-    content = plain_yaml(text, path.name, "readable YAML")
+    content = plain_yaml(path, path.name, "readable YAML")
     require(isinstance(content, dict), path.name, type(content).__name__, "a mapping of settings")
     return flatten(content)
 
 
-def plain_yaml(text: str, where: str, expected: str) -> Any:
+def plain_yaml(given: str | Path, where: str, expected: str) -> Any:
     """Read YAML from whoever wrote it as plain data, and no more of it than stands there.
 
     Parameters
     ----------
-    text : str
-        The YAML.
+    given : str or Path
+        The YAML, or its file.
     where : str
         Where it stands, for messages.
     expected : str
@@ -255,19 +245,30 @@ def plain_yaml(text: str, where: str, expected: str) -> Any:
     Raises
     ------
     InputError
-        If it is no YAML, or longer than `MAX_YAML_BYTES`, of more than `MOST_NODES` values, all
-        aliases followed, nested more deeply than `DEEPEST`, or has tags that make other things.
+        If it cannot be read or is no YAML, or longer than `MAX_YAML_BYTES`, of more than
+        `MOST_NODES` values, all aliases followed, nested more deeply than `DEEPEST`, or has tags
+        that make other things.
     """
-    size = len(text)
-    require(size <= MAX_YAML_BYTES, where, f"{size} characters", f"at most {MAX_YAML_BYTES}")
     try:
+        text = given if isinstance(given, str) else _text_of_file(given, where, expected)
+        size = len(text)
+        require(size <= MAX_YAML_BYTES, where, f"{size} characters", f"at most {MAX_YAML_BYTES}")
         _check_bounds(text, where)
         return yaml.safe_load(text)
     except InputError:
         raise
+    except OSError as error:
+        raise InputError(where, error.strerror, expected) from error
     except (yaml.YAMLError, ValueError, OverflowError, TypeError, AttributeError) as error:
         reason = " ".join(str(error).split("\n")[0].split())
         raise InputError(where, f"text that is no YAML ({reason})", expected) from error
+
+
+def _text_of_file(path: Path, where: str, expected: str) -> str:
+    regular = path.is_file()  # a pipe would wait for somebody who writes
+    require(regular, where, "no file" if path.exists() else "no such file", expected)
+    with path.open("rb") as file:
+        return file.read(MAX_YAML_BYTES + 1).decode("utf-8-sig")
 
 
 def _check_bounds(text: str, where: str) -> None:
@@ -278,7 +279,7 @@ def _check_bounds(text: str, where: str) -> None:
     for event in yaml.parse(text, yaml.SafeLoader):
         if isinstance(event, yaml.AliasEvent):
             endless = any(event.anchor == anchor for anchor, _ in within)
-            count += MOST_NODES + 1 if endless else sizes.get(event.anchor, 1)
+            count += MOST_NODES + 1 if endless else sizes.get(event.anchor or "", 1)
         elif isinstance(event, yaml.CollectionEndEvent):
             anchor, before = within.pop()
             if anchor:

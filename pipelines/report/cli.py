@@ -54,10 +54,16 @@ def main(argv: Sequence[str] | None = None) -> int:
     except InputError as error:
         print(f"gapath-report: {error}", file=sys.stderr)
         return 2
+    except OSError as error:
+        if isinstance(error, BrokenPipeError):  # `gapath-report runs | head`
+            sys.stderr.close()
+            return 0
+        where, found = error.filename or "output", error.strerror or type(error).__name__
+        right = "a file or folder that can be read, or written"
+        print(f"gapath-report: {InputError(where, found, right)}", file=sys.stderr)
+        return 2
     except KeyboardInterrupt:
         return 130
-    except BrokenPipeError:  # `gapath-report runs | head`
-        sys.stderr.close()
     return 0
 
 

@@ -63,6 +63,18 @@ CASES = {
     "~planner": "planner: got nothing, expected settings, which task=plan uses",
     "output=${foo}": "output: got Interpolation key 'foo' not found, expected .*",
     "output=": "output: got '', expected a folder",
+    "planner=../planner/ga3": r"planner: got \.\./planner/ga3, expected the name of a YAML, .*",
+    "planner=ga3.yaml": r"planner: got ga3\.yaml, expected the name of a YAML, without .*",
+    "recorder=[mcap,../recorder/none]": r"recorder: got \.\./recorder/none, expected the name .*",
+    "trials=1 trials=2": "trials: got 1 and 2, expected one value",
+    "force=2": "force: got 2, expected true or false",
+    "task=drive drive=null": "drive: got nothing, expected settings, which task=drive uses",
+    "task=drive drive.known_map=none.map": r"drive\.known_map, none\.map: got no such file, .*",
+    "map=image map.path=a.png map.start={a:1}": r"map\.start: got \{'a': 1\}, expected a value of "
+    r"type list\[int\] \| None",
+    "seed=-1": r"seed: got -1, expected an integer in \[0, 2\^64\)",
+    "trials=0": r"trials: got 0, expected an integer from 1 to 10\^6",
+    "threads=257": "threads: got 257, expected an integer from 1 to 256",
     # What the task does not use.
     "task=plan navigator=kg18": "navigator: got kg18 with task=plan, expected task=drive, to which "
     "the group navigator belongs",
