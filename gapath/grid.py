@@ -8,7 +8,7 @@ import hashlib
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -107,7 +107,9 @@ class GridMap(Shown):
         try:
             given = np.asarray(self.weights)
             require(given.dtype.kind in "biuf", where, f"an array of {given.dtype}", "real numbers")
-            weights = given if _is_final(given) else np.array(given, dtype=np.float64, order="C")
+            flags, real = given.flags, given.dtype == np.float64
+            final = real and flags.c_contiguous and flags.owndata and not flags.writeable
+            weights = given if final else np.array(given, dtype=np.float64, order="C")
         except ValueError as error:  # rows of different lengths
             if isinstance(error, InputError):
                 raise
@@ -126,9 +128,8 @@ class GridMap(Shown):
         )
         if not (weights.min() >= 0.0 and weights.max() <= 1.0):  # also where one is NaN
             y, x = np.argwhere(~((weights >= 0.0) & (weights <= 1.0)))[0]
-            raise InputError(
-                f"{where}, field ({x}, {y})", weights[y, x], "a finite weight in [0, 1]"
-            )
+            place, right = f"{where}, field ({x}, {y})", "a finite weight in [0, 1]"
+            raise InputError(place, weights[y, x], right)
         numbers = (self.resolution, *self.origin)
         require(
             all(isinstance(v, int | float) for v in numbers),
@@ -136,18 +137,10 @@ class GridMap(Shown):
             numbers,
             "numbers",
         )
-        require(
-            math.isfinite(self.resolution) and self.resolution > 0,
-            f"{where}, resolution",
-            self.resolution,
-            "a positive number of metres",
-        )
-        require(
-            all(math.isfinite(v) for v in self.origin),
-            f"{where}, origin",
-            self.origin,
-            "three finite numbers (metres, metres, radians)",
-        )
+        good = math.isfinite(self.resolution) and self.resolution > 0
+        require(good, f"{where}, resolution", self.resolution, "a positive number of metres")
+        right = "three finite numbers (metres, metres, radians)"
+        require(all(map(math.isfinite, self.origin)), f"{where}, origin", self.origin, right)
         weights.setflags(write=False)
         # file names may hold bytes that are no text; logs and tables cannot
         name = self.name.encode("utf-8", "replace").decode("utf-8")
@@ -295,14 +288,6 @@ class GridMap(Shown):
         offset = np.array([0.5, self.rows - 0.5]) * self.resolution
         corner = np.array(self.origin[:2] if self.origin[2] == 0.0 else (0.0, 0.0))
         return np.array([self.resolution, -self.resolution]), offset + corner
-
-
-def _is_final(given: NDArray[Any]) -> bool:
-    """Tell whether an array can be a map's weights as it is: nobody changes it."""
-    flags = given.flags
-    return (
-        given.dtype == np.float64 and flags.c_contiguous and flags.owndata and not flags.writeable
-    )
 
 
 def other_reading(grid: PlanningMap, obstacles: NDArray[np.bool_], places: list[Field]) -> str:

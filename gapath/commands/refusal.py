@@ -86,8 +86,9 @@ def check_own(words: Sequence[str], runtime: DictConfig) -> None:
     """
     chosen = [(group, str(name)) for group, name in runtime.choices.items() if name is not None]
     for key, _, value in (word.lstrip("+").partition("=") for word in words):
-        if key in OFFERS and value.startswith("["):  # several at once, which are no choice to Hydra
-            chosen += [(key, name.strip()) for name in value.strip("[]").split(",")]
+        several = _LIST.fullmatch(value)  # which to Hydra are no choice
+        if key in OFFERS and several:
+            chosen += [(key, name.strip()) for name in several[1].split(",")]
     for group, name in chosen:
         good = not name or _CHOICE.fullmatch(name) is not None
         require(good, group, name, "the name of a YAML, without a folder and an ending")
@@ -98,6 +99,7 @@ def check_own(words: Sequence[str], runtime: DictConfig) -> None:
                 require(not file.exists(), group, file, f"another name: gapath has its own {name}")
 
 
+_LIST = re.compile(r"\[(.*)\]")
 _CHOICE = re.compile(r"(?:[^./\\]+/)*[^./\\]+")
 
 
