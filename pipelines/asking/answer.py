@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, TextIO
 import pandas as pd
 
 from gapath.errors import printable, require
-from gapath.pipelines.numbers.text import NOTHING, number
+from gapath.pipelines.numbers.text import NOTHING, in_csv, number
 
 _GAP = "  "
 _LEAST = 8
@@ -32,14 +32,12 @@ class Answer(NamedTuple):
 def write_csv(answer: Answer, file: TextIO) -> None:
     """Write every value with all its digits; an empty cell where there is none."""
     writer = csv.writer(file, lineterminator="\n")
-    writer.writerow(map(printable, answer.names))
+    writer.writerow(map(in_csv, answer.names))
     writer.writerows(zip(*(map(_lower, column) for column in answer.columns), strict=True))
 
 
 def _lower(value: Any) -> Any:
-    if isinstance(value, bool):
-        return str(value).lower()
-    return printable(value) if isinstance(value, str) else value
+    return str(value).lower() if isinstance(value, bool) else in_csv(value)
 
 
 def write_json(answer: Answer, file: TextIO) -> None:

@@ -1,6 +1,6 @@
 """The answer to a question: sentences, tables, pictures, and what they rest on."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -23,9 +23,9 @@ from gapath.pipelines.compare.words import WORDINGS, sentences, some
 from gapath.pipelines.numbers.comparing.comparable import comparable
 from gapath.pipelines.numbers.comparing.comparison import QUANTITIES, Comparison, compare
 from gapath.pipelines.numbers.comparing.groups import Groups, overlap, side_by_side
-from gapath.pipelines.numbers.text import number, span
+from gapath.pipelines.numbers.text import in_markdown, number, span
 from gapath.pipelines.page.page import files_of
-from gapath.pipelines.page.section import Section, Table
+from gapath.pipelines.page.section import Figure, Section, Table, csv_of
 
 NAMES = frozenset(
     ["groups.csv"]
@@ -108,18 +108,18 @@ class Answer:
         drawn = figures(self.comparisons, self.by, self.groups.names)
         section = Section(self.heading, tables=tuple(tables), figures=tuple(drawn))
         files = dict(files_of(section))
-        page = [f"# {self.heading}"]
+        page = [f"# {in_markdown(self.heading)}"]
         for quantity, found in self.said().items():
-            page += [f"## {WORDINGS[quantity].title}", "\n".join(f"- {each}" for each in found)]
+            page += [f"## {WORDINGS[quantity].title}", _items(found)]
             names = [each for each in drawn if each.name == f"comparison_{quantity}"]
-            page += [f"![{each.alt}]({each.name}.svg)\n\n{each.caption}" for each in names]
+            page += map(_picture, names)
         page += [f"## {'Tables' if len(tables) > 1 else 'Table'}"]
         page += [each.markdown().strip() for each in tables]
         ranks = [each for each in drawn if each.name == "comparison_ranks"]
-        page += [f"![{each.alt}]({each.name}.svg)\n\n{each.caption}" for each in ranks]
-        page += ["## Remarks", "\n".join(f"- {each}" for each in self.remarks)]
+        page += map(_picture, ranks)
+        page += ["## Remarks", _items(self.remarks)]
         files["comparison.md"] = ("\n\n".join(page) + "\n").encode()
-        files["groups.csv"] = _csv(groups_frame(self.comparisons))
+        files["groups.csv"] = csv_of(groups_frame(self.comparisons)).encode()
         return list(files.items())
 
     def plain(self) -> dict[str, Any]:
@@ -160,6 +160,15 @@ def answer(
     groups = side_by_side(choice.trials, choice.task.success, choice.group, choice.also)
     found = tuple(compare(groups, quantity) for quantity in quantities)
     return Answer(by or "where", choice, groups, found)
+
+
+def _items(texts: Iterable[str]) -> str:
+    return "\n".join(f"- {in_markdown(text)}" for text in texts)
+
+
+def _picture(figure: Figure) -> str:
+    alt, caption = in_markdown(figure.alt), in_markdown(figure.caption)
+    return f"![{alt}]({figure.name}.svg)\n\n{caption}"
 
 
 def _pairing(choice: Choice, groups: Groups) -> list[str]:
@@ -206,11 +215,6 @@ def _limits(choice: Choice, groups: Groups) -> list[str]:
     if len(choice.versions) > 1:
         found.append(f"The runs are of gapath {', '.join(choice.versions)}.")
     return found
-
-
-def _csv(frame: pd.DataFrame) -> bytes:
-    text: str = frame.to_csv(index=False, lineterminator="\n")
-    return text.encode()
 
 
 def _records(frame: pd.DataFrame) -> list[dict[str, Any]]:

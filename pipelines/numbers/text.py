@@ -1,7 +1,9 @@
-"""How numbers are written for people."""
+"""How numbers are written for people, and text of others where it may be taken for more."""
 
 import math
+import re
 
+from gapath.errors import printable
 from gapath.pipelines.numbers.statistics import Interval
 
 NOTHING = "\N{EN DASH}"
@@ -74,3 +76,34 @@ def file_size(count: float) -> str:
             return f"{count:.0f} {unit}"
         count /= 1000
     return f"{count:.1f} GB"
+
+
+def in_csv(value: object) -> object:
+    """Give a cell of CSV: text `printable`, and such that no spreadsheet takes it for a formula."""
+    if not isinstance(value, str):
+        return value
+    text = printable(value)
+    return f"'{text}" if text.startswith(("=", "+", "-", "@")) else text
+
+
+def in_markdown(text: object) -> str:
+    """Write text for Markdown, where HTML would be HTML, and a bar or a code's mark end a cell."""
+    return _MARKUP.sub(lambda found: _MARKED[found[0]], printable(text))
+
+
+_MARKED = {"<": "&lt;", "`": r"\`", "|": r"\|", "](": r"]\("}
+_MARKUP = re.compile(r"<(?=[a-zA-Z/!?])|`|\||\]\(")
+
+
+def in_latex(text: object) -> str:
+    """Write text for LaTeX."""
+    shown = "".join(_LATEX.get(character, character) for character in printable(text))
+    return f"{{[}}{shown[1:]}" if shown.startswith("[") else shown  # behind a row's end an option
+
+
+_LATEX = {
+    "\\": r"\textbackslash ", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#",
+    "_": r"\_", "{": r"\{", "}": r"\}", "~": r"\textasciitilde ", "^": r"\^{}",
+    "∞": r"$\infty$", "\N{EN DASH}": "--", "<": "$<$", ">": "$>$",
+    "\N{NARROW NO-BREAK SPACE}": r"\,", "\N{NO-BREAK SPACE}": "~",
+}  # fmt: skip

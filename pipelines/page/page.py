@@ -9,7 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, Template
+from markupsafe import Markup
 
+from gapath.errors import printable
 from gapath.pipelines.numbers.text import number
 from gapath.pipelines.page.figures import picture_of
 from gapath.pipelines.page.rows import rows_of, width_of
@@ -52,6 +54,13 @@ def script() -> str:
     return f"\n{library}\n{own}"
 
 
+def _seen(value: Any) -> Any:
+    """Let text of others be seen as it is: HTML escapes its own marks, not what turns writing."""
+    if isinstance(value, Markup) or not isinstance(value, str) or value.isprintable():
+        return value
+    return "\n".join(map(printable, value.split("\n")))
+
+
 @cache
 def template(name: str) -> Template:
     """Compile a template of this folder."""
@@ -62,6 +71,7 @@ def template(name: str) -> Template:
         lstrip_blocks=True,
         keep_trailing_newline=True,
         auto_reload=False,
+        finalize=_seen,
     )
     environment.globals.update(
         number=number, rows_of=rows_of, width_of=width_of, picture_of=picture_of

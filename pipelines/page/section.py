@@ -21,11 +21,12 @@ from pathlib import Path
 from types import ModuleType
 
 import pandas as pd
+from pandas.api.types import is_numeric_dtype
 
 from gapath.discovery import entry_points, imported
 from gapath.errors import require, require_all
 from gapath.pipelines.numbers.behind import keys_behind
-from gapath.pipelines.numbers.text import number
+from gapath.pipelines.numbers.text import in_csv, in_latex, in_markdown, number
 
 ALL = "*"
 """What a section declares that wants the trials of every task, or of every experiment."""
@@ -112,18 +113,18 @@ class Table:
 
     def csv(self) -> str:
         """Write the numbers as CSV."""
-        text: str = self.data.to_csv(index=False, lineterminator="\n")
-        return text
+        return csv_of(self.data)
 
     def markdown(self) -> str:
         """Write the text of the cells as Markdown."""
-        text = self.shown.rename(columns=_in_cell).map(_in_cell)
-        return f"{text.to_markdown(index=False, disable_numparse=True)}\n\n{self.caption}\n"
+        text = self.shown.rename(columns=in_markdown).map(in_markdown)
+        table = text.to_markdown(index=False, disable_numparse=True)
+        return f"{table}\n\n{in_markdown(self.caption)}\n"
 
     def latex(self) -> str:
         """Write the text of the cells as LaTeX (booktabs)."""
-        escaped = _escape(self.caption)
-        text = self.shown.rename(columns=_escape).map(_escape)
+        escaped = in_latex(self.caption)
+        text = self.shown.rename(columns=in_latex).map(in_latex)
         table: str = text.to_latex(index=False, caption=escaped, label=f"tab:{self.name}")
         return table
 
@@ -182,6 +183,14 @@ class Section:
     runs: tuple[str, ...] = ()
 
 
+def csv_of(data: pd.DataFrame) -> str:
+    """Write plain numbers and texts as CSV."""
+    texts = {name: data[name].map(in_csv) for name in data if not is_numeric_dtype(data[name])}
+    written = data.assign(**texts).rename(columns=in_csv)
+    text: str = written.to_csv(index=False, lineterminator="\n")
+    return text
+
+
 def find_sections() -> list[ModuleType]:
     """Find the modules that make a section, in the order of the page.
 
@@ -213,20 +222,3 @@ def _find(*patterns: str) -> list[ModuleType]:
     paths = sorted(path for pattern in patterns for path in top.rglob(pattern))
     names = [".".join(path.relative_to(top).with_suffix("").parts) for path in paths]
     return [importlib.import_module(f"gapath.pipelines.{name}") for name in names]
-
-
-def _in_cell(text: str) -> str:
-    """Write text for a cell of Markdown, which a bar would end."""
-    return text.replace("|", r"\|")
-
-
-def _escape(text: str) -> str:
-    """Write text for LaTeX."""
-    for plain, latex in (
-        ("\\", r"\textbackslash "), ("&", r"\&"), ("%", r"\%"), ("$", r"\$"), ("#", r"\#"),
-        ("_", r"\_"), ("{", r"\{"), ("}", r"\}"), ("~", r"\textasciitilde "), ("^", r"\^{}"),
-        ("∞", r"$\infty$"), ("\N{EN DASH}", "--"), ("<", "$<$"), (">", "$>$"),
-        ("\N{NARROW NO-BREAK SPACE}", r"\,"), ("\N{NO-BREAK SPACE}", "~"),
-    ):  # fmt: skip
-        text = text.replace(plain, latex)
-    return text

@@ -18,6 +18,7 @@ from tqdm import tqdm
 
 from gapath.discovery import kinds
 from gapath.errors import InputError, require
+from gapath.pipelines.reading.bounded import check_amounts, check_size, plain, plain_texts
 from gapath.pipelines.reading.counted import superseded
 from gapath.pipelines.reading.names import told_apart
 from gapath.store.records import CONFIG, TRIALS, RunRecord
@@ -99,7 +100,12 @@ def read_trials(runs: Iterable[RunRecord]) -> Collected:
     skipped = [Skipped(run.name, run.fault) for run in runs if run.fault]
     skipped += [Skipped(run.name, f"{new.name} counts, of the same setting") for run, new in older]
     left_out = {each.run for each in skipped}
-    good = [run for run in runs if run.name not in left_out]
+    good = []
+    for run in (run for run in runs if run.name not in left_out):
+        try:
+            good.append(plain(run))
+        except InputError as error:
+            skipped.append(Skipped(run.name, str(error)))
     used: list[RunRecord] = []
     rows: dict[str, list[pa.Table]] = {task: [] for task in kinds("task")}
     lengths: dict[str, list[int]] = {task: [] for task in rows}
@@ -196,6 +202,7 @@ def _rows(run: RunRecord, forms: Mapping[str, _Form]) -> pa.Table:
         # A metric that was added since, by a package perhaps, is missing; the run is still good.
         missing = sorted(set(forms) - there - set(metrics()))
         require(not missing, TRIALS, f"no column {', '.join(missing)}", "all columns of a trial")
+        check_size(file.metadata, [name for name in forms if name in there], run.known.trials)
         table = file.read([name for name in forms if name in there], use_threads=False)
     except InputError:
         raise
@@ -209,7 +216,9 @@ def _rows(run: RunRecord, forms: Mapping[str, _Form]) -> pa.Table:
         else pa.array(np.full(len(table), math.nan))
         for name, form in forms.items()
     ]
-    return pa.table(arrays, list(forms))
+    rows = pa.table(arrays, list(forms))
+    check_amounts(rows, find_task(run.known.task).success)
+    return rows
 
 
 def _opened(content: bytes, texts: Sequence[str]) -> parquet.ParquetFile:
@@ -224,15 +233,29 @@ def _column(name: str, column: pa.ChunkedArray, form: _Form) -> Any:
     """Give a column the type in which it is held; raise InputError where it has another kind."""
     where, kind = f"{TRIALS}, {name}", column.type
     good = not (types.is_boolean(kind) and column.null_count)
-    if kind == form.held and good:
+    if kind == form.held and good and form.held != _TEXT:
         return column
     require(good and form.fits(kind), where, "another type", form.what)
     if form.held == _TEXT:
-        return column.cast(pa.string()).dictionary_encode()
+        return _text(column, where)
     try:
         return column.cast(form.held)
     except pa.ArrowInvalid as error:
         raise InputError(where, "another type", form.what) from error
+
+
+def _text(column: pa.ChunkedArray, where: str) -> Any:
+    """Give text as categories, each of which can be shown."""
+    column = column.cast(_TEXT) if types.is_dictionary(column.type) else column.dictionary_encode()
+    column = column.unify_dictionaries().combine_chunks()
+    if not len(column):
+        return column.cast(_TEXT)
+    given = column.dictionary.cast(pa.string()).to_pylist()
+    plainly = plain_texts(given, where)
+    if plainly == given:
+        return column.cast(_TEXT)
+    column = pa.DictionaryArray.from_arrays(column.indices, pa.array(plainly))
+    return column.cast(pa.string()).dictionary_encode()  # two of them may be one now
 
 
 def _check_stages(column: pa.ChunkedArray) -> None:

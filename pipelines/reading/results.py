@@ -1,6 +1,7 @@
 """What a run's trials come to."""
 
 from gapath.errors import InputError
+from gapath.pipelines.reading.bounded import check_size
 from gapath.store.records import TRIALS, RunRecord
 from gapath.store.results import Results
 
@@ -32,9 +33,12 @@ def results_of(run: RunRecord) -> Results:
     task = find_task(run.known.task)
     try:
         file = parquet.ParquetFile(run.folder / TRIALS)
+        check_size(file.metadata, file.schema_arrow.names, run.known.trials)
         there = set(file.schema_arrow.names)
         numbers = [name for name, kind in columns(task.row).items() if kind is not str]
         rows = file.read([name for name in numbers if name in there], use_threads=False)
         return results(task, {name: rows[name].to_numpy() for name in rows.column_names})
+    except InputError:
+        raise
     except Exception as error:  # pyarrow raises more kinds than it documents
         raise InputError(TRIALS, type(error).__name__, "readable Parquet") from error

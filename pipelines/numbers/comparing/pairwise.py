@@ -15,7 +15,8 @@ Vector = NDArray[np.float64]
 LEVEL = 0.05
 """A difference counts if it would come about by chance less often than this."""
 
-_RESAMPLES = 1000
+_RESAMPLES, _AT_ONCE = 1000, 1 << 24
+"""Resamples of a bootstrap, and trials in those that are made at once: more would not fit."""
 
 
 class Difference(NamedTuple):
@@ -241,9 +242,10 @@ def unpaired_amounts(first: Vector, second: Vector, sized: bool = True) -> Diffe
     if min(len(first), len(second)) < 2:
         return result._replace(why="a group of one trial only, too few for a test")
     if sized and min(first.min(), second.min()) > 0:
+        batch = max(1, min(_RESAMPLES, _AT_ONCE // (len(first) + len(second))))
         low, high = bootstrap(
             (first, second), _median_ratio, n_resamples=_RESAMPLES, method="percentile",
-            rng=np.random.default_rng(0), vectorized=True,
+            batch=batch, rng=np.random.default_rng(0), vectorized=True,
         ).confidence_interval  # fmt: skip
         effect = float(_median_ratio(first, second))
         result = result._replace(effect=effect, low=float(low), high=float(high))
