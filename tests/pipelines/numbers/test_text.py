@@ -1,12 +1,17 @@
+import csv
+import io
 import math
 import shlex
 from itertools import product
 
+import pandas as pd
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from gapath.pipelines.numbers import text
+from gapath.pipelines.numbers.text import in_csv, in_latex, in_markdown
+from gapath.pipelines.page.section import Table
 from gapath.pipelines.report.command import as_sweeps
 
 
@@ -114,3 +119,25 @@ def test_many_numbers_on_end_are_written_as_their_range():
     assert line == "gapath -m 'map.problem=range(5,125)' planner=a,b"
     (line,) = as_sweeps(job for job in jobs if "=17 " not in job)
     assert "16,18" in line and "range" not in line
+
+
+EVIL = "=cmd()|<script>alert(1)</script>](javascript:x)`\x1b[2J\u202e_$&%#{}~^\\"
+
+
+def test_text_of_others_is_no_more_than_text_in_any_file():
+    frame = pd.DataFrame({EVIL: [EVIL, "a"], "n": [-1.5, 2.0]})
+    table = Table("evil", EVIL, frame, frame.astype(str), heads=1)
+    for each in (table.csv(), table.markdown(), table.latex()):
+        assert "\x1b" not in each and "\u202e" not in each
+        assert r"\x1b[2J" in each or r"textbackslash x1b" in each
+    assert list(csv.reader(io.StringIO(table.csv())))[1][0].startswith("'=cmd()")
+    assert "-1.5" in table.csv() and "'-1.5" not in table.csv()
+    assert "<script" not in table.markdown() and "](" not in table.markdown()
+    assert r"\$\&\%\#\{\}\textasciitilde \^{}\textbackslash " in table.latex()
+    assert in_latex("[1]") == "{[}1]"
+
+
+def test_what_people_write_stays_as_it_is():
+    for plain in ("ga1[population=20]", "< 0.1", "12 (10 to 14)", "büro", "kg18_test3"):
+        assert in_markdown(plain) == in_csv(plain) == plain
+    assert in_latex("50 %, a_b") == r"50 \%, a\_b"
