@@ -91,6 +91,8 @@ def _scenario_problem(where: str, line: str) -> ScenarioProblem:
         length = float(columns[8])
     except ValueError as error:
         raise InputError(where, repr(line[:80]), "numbers in all columns but the second") from error
+    small = all(abs(v) < 2**31 for v in (bucket, cols, rows, x, y, goal_x, goal_y))
+    require(small, where, repr(line[:80]), "whole numbers between -2^31 and 2^31")
     require(math.isfinite(length) and length >= 0, where, length, "a finite optimal length >= 0")
     return ScenarioProblem(bucket, columns[1], cols, rows, (x, y), (goal_x, goal_y), length)
 
