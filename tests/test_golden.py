@@ -62,7 +62,7 @@ def run(folder, map_name, planner, trials=2, **values):
     settings = yaml_values("planner", planner) | values
     problem = Problem(grid, grid.start, grid.target)
     made = build("planner", settings, "planner")
-    recorders = [mcap.Recorder(flush_every=7)]
+    recorders = [mcap.Recorder()]
     return execute(
         Run(
             "golden",

@@ -1,28 +1,19 @@
 """The ``gapath-log`` command: look into a log, check it, save it, show it."""
 
 import argparse
-import dataclasses
 import os
 import subprocess
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
-from itertools import zip_longest
+from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 import gapath
-from gapath.errors import InputError, require
-from gapath.events import (
-    Event,
-    Finished,
-    RunFinished,
-    RunStarted,
-    Stepped,
-)
+from gapath.discovery import component_of
+from gapath.errors import FAULTS, InputError, printable, require
+from gapath.events import Event, Finished, RunFinished, RunStarted
 from gapath.recorders import mcap
 from gapath.recorders.mcap import FILE
 from gapath.store.durable import part_of
@@ -46,7 +37,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     -------
     int
         Exit code: 0 for success, 1 if a log is not reproduced or the viewer failed, 2 for
-        bad input, also of one log among several.
+        bad input, 3 if a log is equal as far as it goes; of several logs the largest.
     """
     arguments = _parser().parse_args(argv)
     try:
@@ -61,7 +52,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _complain(error: Exception) -> int:
-    print(f"gapath-log: {' '.join(str(error).split())}", file=sys.stderr)
+    print(f"gapath-log: {printable(' '.join(str(error).split()))}", file=sys.stderr)
     return 2
 
 
@@ -79,15 +70,17 @@ def _parser() -> argparse.ArgumentParser:
         given = ("files", "+") if many else ("file", None)
         about = f"a log, such as {FILE}"
         sub.add_argument(given[0], nargs=given[1], type=Path, metavar="FILE", help=about)
+        sub.add_argument("--large", action="store_true", help="read one that is unusually large")
         sub.set_defaults(run=run)
         return sub
 
     command("info", _info, "say what a log holds, and whether it is whole")
-    compare = "run logs again and compare every event; exit code 1 if one differs"
+    compare = "run logs again, write them anew and compare; exit code 1 if one differs"
     verify = command("verify", _verify, compare, many=True)
+    verify.add_argument("--yes", action="store_true", help="also if it takes long")
     verify.add_argument(
         "--kernels", default="auto", metavar="NAME",
-        help="which kernels compute, such as scalar; the events are the same (default: auto)",
+        help="which kernels compute, such as scalar; the log is the same (default: auto)",
     )  # fmt: skip
     salvage = command("salvage", _salvage, f"save what a killed run left ({part_of(Path(FILE))})")
     salvage.add_argument(
@@ -103,6 +96,10 @@ def _parser() -> argparse.ArgumentParser:
     )
     command("view", _view, "open a log's first trial, or a recording (.rrd), in the Rerun viewer")
     return parser
+
+
+def _limits(arguments: argparse.Namespace) -> mcap.Limits:
+    return mcap.LARGE if arguments.large else mcap.USUAL
 
 
 def _trials(text: str) -> list[int]:
@@ -127,12 +124,11 @@ def _log_of(path: Path) -> Path:
 
 def _info(arguments: argparse.Namespace) -> int:
     path = _log_of(arguments.file)
-    try:
-        run, ended, finished = _summary(mcap.read_events(path))
-        state = "whole" if ended else "whole, but the run was interrupted"
-    except InputError as error:
-        run, ended, finished = _summary(mcap.read_prefix(path))
-        state = f"cut off or damaged ({error.value}); save the rest: gapath-log salvage {path}"
+    messages: Counter[str] = Counter()
+    run, ended, finished, fault = _summary(mcap.look(path, _limits(arguments), messages))
+    state = "whole" if ended else "whole, but the run was interrupted"
+    if fault is not None:
+        state = f"cut off or damaged ({fault}); save the rest: gapath-log salvage {path}"
     task, problem, grid = find_task(run.task), run.problem, run.problem.map
     ends = ", ".join(f"{count} {end}" for end, count in finished.items())
     rows = {
@@ -150,25 +146,30 @@ def _info(arguments: argparse.Namespace) -> int:
         "versions": ", ".join(f"{name} {version}" for name, version in run.versions.items()),
     }
     for name, value in rows.items():
-        print(f"{name + ':':14}{value}")
+        print(f"{name + ':':14}{printable(value)}")
     print("messages:")
-    for topic, count in sorted(mcap.count_messages(path).items()):
+    for topic, count in sorted(messages.items()):
         print(f"  {topic:14}{count}")
     print("settings:")
     for line in text_of(run.settings).splitlines():
-        print(f"  {line}")
+        print(f"  {printable(line)}")
     return 0
 
 
-def _summary(events: Iterator[Event]) -> tuple[RunStarted, bool, Counter[str]]:
-    """Give the first event, whether the run came to its end, and how its trials ended."""
-    run, last = next(events), None
+def _summary(events: Iterator[Event]) -> tuple[RunStarted, bool, Counter[str], InputError | None]:
+    """Give the first event, whether the run came to its end, how its trials ended, what is wrong.
+
+    Raises InputError if nothing is whole.
+    """
+    run, last, finished = next(events), None, Counter[str]()
     assert isinstance(run, RunStarted), "the reader gives it first"
-    finished: Counter[str] = Counter()
-    for last in events:
-        if isinstance(last, Finished):
-            finished[last.ending] += 1
-    return run, isinstance(last, RunFinished), finished
+    try:
+        for last in events:
+            if isinstance(last, Finished):
+                finished[last.ending] += 1
+    except InputError as error:
+        return run, False, finished, error
+    return run, isinstance(last, RunFinished), finished, None
 
 
 def _salvage(arguments: argparse.Namespace) -> int:
@@ -176,111 +177,101 @@ def _salvage(arguments: argparse.Namespace) -> int:
     place = path.parent.parent if path.parent.name == WORK else path.parent  # the next run empties
     name = path.stem if path.suffix == ".part" else f"{path.stem}.salvaged.mcap"
     output = arguments.output or place / name
-    count = mcap.salvage(path, output)
-    print(f"{output}: {count} events saved and read back")
+    messages, lost = mcap.salvage(path, output, _limits(arguments))
+    print(printable(f"{output}: {messages} messages saved and read back{_lacking(lost.trials)}"))
     return 0
 
 
+def _lacking(trials: Collection[int]) -> str:
+    """Say which trials are not whole in a log that was saved."""
+    few = sorted(trials)[:_FEW]
+    more = f" and {len(trials) - _FEW} more" if len(trials) > _FEW else ""
+    return f"; not whole, so left out: trials {', '.join(map(str, few))}{more}" if few else ""
+
+
+_FEW = 9
+
+
 def _verify(arguments: argparse.Namespace) -> int:
-    return max([_verified(path, arguments.kernels) for path in arguments.files])
+    return max([_verified(path, arguments) for path in arguments.files])
 
 
-def _verified(path: Path, kernels: str) -> int:
+def _verified(path: Path, arguments: argparse.Namespace) -> int:
     """Verify a log, say in a line what came of it, and give the exit code."""
     try:
-        code, found = _compared(_log_of(path), kernels)
+        code, found = _compared(_log_of(path), arguments)
     except (InputError, OSError) as error:
         return _complain(error)
-    print(f"{path}: {found}", flush=True)
+    print(printable(f"{path}: {found}"), flush=True)
     return code
 
 
-def _compared(path: Path, kernels: str) -> tuple[int, str]:
-    from gapath.running.experiment import replay_events  # compiles kernels: only where it is needed
+def _compared(path: Path, arguments: argparse.Namespace) -> tuple[int, str]:
+    from gapath.running import again as running  # compiles kernels: only where it is needed
 
-    logged = mcap.read_events(path)
-    run = next(logged)
-    assert isinstance(run, RunStarted), "the reader gives it first"
-    count, last = 0, None
-    for old, new in zip_longest(logged, replay_events(run, kernels)):
-        if old is None and not isinstance(last, RunFinished):
-            return 0, f"reproduced, {count} events are equal; the run was interrupted after them"
-        found = difference(old, new, _where(old or new))
-        if found:
-            return 1, f"differs after {count} equal events: {found}"
-        count, last = count + 1, old
-    return 0, f"reproduced, {count} events are equal"
+    remarks: list[str] = []
 
+    def again(logged: RunStarted) -> Iterator[Event]:
+        try:
+            made = running.made_again(logged, arguments.kernels)
+            remarks.extend(made.remarks)
+            work = running.work(made)
+            few = arguments.yes or work <= running.MOST_WORK
+            much = f"a run of {logged.trials} trials, up to {work:.1e} individuals and fields"
+            require(few, "work", much, f"at most {running.MOST_WORK:.0e}, or --yes to do it")
+            yield from running.events_again(made)
+        except InputError as error:
+            raise InputError(f"{path}: {error.where}", error.value, error.expected) from error
+        except FAULTS as error:  # of a component whose settings are anybody's
+            what = f"{component_of(error)}: {type(error).__name__} {error}"
+            raise InputError(path, what, "a run that can be done again") from error
 
-def _where(event: Any) -> str:
-    trial = f"trial {event.trial}, " if hasattr(event, "trial") else ""
-    return f"{trial}step {event.step}, {type(event).__name__}"
-
-
-def difference(logged: Any, again: Any, where: str) -> str | None:
-    """Name the first thing in which two events differ.
-
-    Parameters
-    ----------
-    logged, again : event, or part of one
-        What is compared; NaN equals NaN. Wall time is not in a log, so it is left out.
-    where : str
-        Name of the part.
-
-    Returns
-    -------
-    str or None
-        Which part differs and its two values; None if nothing does.
-    """
-    if type(logged) is not type(again):
-        return f"{where}: {_short(logged)} in the log, {_short(again)} now"
-    if dataclasses.is_dataclass(logged):
-        names: Iterable[str] = (field.name for field in dataclasses.fields(logged))
-        names = (name for name in names if (type(logged), name) != (Stepped, "seconds"))
-        return _first_difference(names, logged, again, where)
-    if isinstance(logged, tuple) and hasattr(logged, "_fields"):
-        return _first_difference(logged._fields, logged, again, where)
-    if isinstance(logged, np.ndarray):
-        if logged.shape != again.shape:
-            return f"{where}: shape {logged.shape} in the log, {again.shape} now"
-        differs = (logged != again) & ((logged == logged) | (again == again))
-        if not differs.any():
-            return None
-        index = tuple(map(int, np.argwhere(differs)[0]))
-        return f"{where}{list(index)}: {logged[index]} in the log, {again[index]} now"
-    if logged == again or (logged != logged and again != again):
-        return None
-    return f"{where}: {_short(logged)} in the log, {_short(again)} now"
+    found = mcap.compare(path, again, _limits(arguments))
+    count = f"{found.messages} messages"
+    if found.difference:
+        return 1, f"differs after {count} that are equal: {found.difference}"
+    others = _other_versions(found)
+    if found.byte is not None and not others:
+        return 1, f"differs from byte {found.byte} on, though all of its {count} are equal"
+    level = "byte for byte" if found.byte is None else "every message"
+    told = "; ".join([f"{level}, {count}", *others, *remarks])
+    if found.ended and not found.lost.trials:
+        return 0, f"reproduced, {told}"
+    until = "in its first trial" if found.trial is None else f"after trial {found.trial}"
+    state = "saved in part" if found.ended else f"interrupted {until}"
+    return 3, f"{state}, equal so far, {told}{_lacking(found.lost.trials)}"
 
 
-def _first_difference(names: Iterable[str], logged: Any, again: Any, where: str) -> str | None:
-    found = (difference(getattr(logged, n), getattr(again, n), f"{where}.{n}") for n in names)
-    return next(filter(None, found), None)
+def _other_versions(found: mcap.Comparison) -> list[str]:
+    """Say with which versions a log was made, if with others than there are."""
+    from gapath.store.keys import versions
 
-
-def _short(value: Any) -> str:
-    if value is None:
-        return "nothing"
-    return type(value).__name__ if dataclasses.is_dataclass(value) else repr(value)
+    now, then = versions(), found.run.versions
+    names = [name for name in {**then, **now} if then.get(name) != now.get(name)]
+    told = [f"{name} {then[name]} ({now.get(name, 'none')} here)" for name in names if name in then]
+    told += [f"unknown {name}" for name in names if name not in then]
+    if found.version != mcap.LOG_VERSION:
+        told.insert(0, f"log version {found.version} ({mcap.LOG_VERSION} here)")
+    return [f"made with {', '.join(told)}"] if told else []
 
 
 def _rerun(arguments: argparse.Namespace) -> int:
     path = _log_of(arguments.file)
     folder = arguments.folder or path.parent
     folder.mkdir(parents=True, exist_ok=True)
-    for name in _record(path, arguments.trials, folder):
-        print(folder / name)
+    for name in _record(path, arguments.trials, folder, _limits(arguments)):
+        print(printable(folder / name))
     return 0
 
 
-def _record(path: Path, trials: list[int], folder: Path) -> list[str]:
+def _record(path: Path, trials: list[int], folder: Path, limits: mcap.Limits) -> list[str]:
     """Make recordings of trials from a log; give their names within the folder."""
     from gapath.recorders.rerun import Recorder
 
     recorder = Recorder(trials=trials)
     recorder.open(str(folder))
     try:
-        for event in mcap.read_events(path):
+        for event in mcap.read_events(path, limits):
             recorder.record(event)
     except BaseException:
         recorder.abort()
@@ -297,7 +288,7 @@ def _view(arguments: argparse.Namespace) -> int:
     require(path.is_file(), path, "no such file", "a log or a recording (.rrd)")
     with tempfile.TemporaryDirectory() as folder:
         if path.suffix != ".rrd":
-            path = Path(folder) / _record(path, [0], Path(folder))[0]
+            path = Path(folder) / _record(path, [0], Path(folder), _limits(arguments))[0]
         code = subprocess.run(
             [sys.executable, "-m", "rerun_cli", "--bind", _LOCAL, str(path)], check=False
         ).returncode

@@ -20,7 +20,7 @@ from gapath.problem import CornerCutting, Problem
 from gapath.running.naming import Method, map_name, method_of
 from gapath.scenario.listed import Queries
 from gapath.store.inputs import Inputs, watched
-from gapath.store.settings import flatten, nested
+from gapath.store.settings import flatten
 from gapath.task import Listing, Posing, Task, check_events, columns, find_task
 
 
@@ -166,13 +166,7 @@ def make_run(
     require(root.name not in RESERVED, "name", root.name, "another: the report's files lie there")
     useful = task.threaded or root.threads == 1
     require(useful, "threads", root.threads, f"1 with task={task.name}, which they do not speed up")
-    common = {key: value for key, value in asdict(root).items() if key not in HOW}
-    settings = common | {
-        group: checked(task.shapes[group], chosen[group], group)
-        if group in task.shapes
-        else normalised(group, chosen[group], group)
-        for group in task.groups
-    }
+    settings = settings_of(root, chosen)
     recorders: list[Recorder] = [
         build("recorder", values, f"recorder.{name}") for name, values in root.recorder.items()
     ]
@@ -264,6 +258,36 @@ def split(loose: Mapping[str, Any]) -> tuple[Root, dict[str, Any]]:
     return root, chosen
 
 
+def settings_of(root: Root, chosen: Mapping[str, Any]) -> dict[str, Any]:
+    """Give a run's settings, nested: those of the root but `HOW`, and of its task's groups.
+
+    Parameters
+    ----------
+    root : Root
+        The root.
+    chosen : mapping
+        Group -> its settings, as `split` gives them.
+
+    Returns
+    -------
+    dict
+        In one order and with one type each: what means the same is equal.
+
+    Raises
+    ------
+    InputError
+        If a setting is unknown, missing or mistyped.
+    """
+    task = find_task(root.task)
+    common = {key: value for key, value in asdict(root).items() if key not in HOW}
+    return common | {
+        group: checked(task.shapes[group], chosen[group], group)
+        if group in task.shapes
+        else normalised(group, chosen[group], group)
+        for group in task.groups
+    }
+
+
 def read_problem(settings: Root, task: Task | None, maps: Mapping[str, GridMap]) -> Problem:
     """Read the map and pose the problem that its start and target define.
 
@@ -294,17 +318,20 @@ def read_problem(settings: Root, task: Task | None, maps: Mapping[str, GridMap])
         grid = dataclasses.replace(grid, name=named)
     if isinstance(task, Posing):
         listed = reader.queries(grid) if isinstance(reader, Listing) else None
-        return _first_of(task.pose(grid, listed, rule), grid, rule, maps)
+        return first_of(task.pose(grid, listed, rule), grid, rule, maps)
     for name in ("start", "target"):
         require(getattr(grid, name) is not None, f"map.{name}", "null", "a field [x, y]")
     assert grid.start is not None and grid.target is not None
     return Problem(grid, grid.start, grid.target, rule, maps, grid.published_length)
 
 
-def _first_of(
+def first_of(
     queries: Queries, grid: GridMap, rule: CornerCutting, maps: Mapping[str, GridMap]
 ) -> Problem:
-    """Pose the first query that can be solved, or else the first whose ends are free."""
+    """Pose the first query that can be solved, or else the first whose ends are free.
+
+    Raises InputError if one of them lies outside the map.
+    """
     ends = np.hstack([queries.starts, queries.targets])
     outside = (ends < 0) | (ends >= 2 * (grid.cols, grid.rows))
     for index in np.flatnonzero(outside.any(axis=1))[:1]:
@@ -318,28 +345,3 @@ def _first_of(
     first = int(np.argmax(joined if joined.any() else free))
     (x, y, u, v), length = ends[first].tolist(), float(queries.lengths[first])
     return Problem(grid, (x, y), (u, v), rule, maps, length, queries)
-
-
-def task_of(settings: Settings) -> Task:
-    """Make the task that a run's settings describe.
-
-    Parameters
-    ----------
-    settings : mapping
-        `Run.settings`, as a log has them.
-
-    Returns
-    -------
-    Task
-        The task.
-
-    Raises
-    ------
-    InputError
-        If the settings are not those of this version.
-    """
-    task = find_task(settings.get("task"), "settings of the log, task")
-    given = nested(settings)
-    for group in task.groups:
-        require(isinstance(given.get(group), dict), "settings of the log", f"no {group}", "a run's")
-    return task.make(given)

@@ -1,7 +1,6 @@
 """Seeds, trials and run folders: from a checked run to files on disk."""
 
 import traceback
-from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,9 +11,8 @@ import yaml
 from gapath.discovery import component_of
 from gapath.errors import InputError, printable
 from gapath.events import Event, RunFinished, RunStarted
-from gapath.planning.acceleration import AUTO, with_kernels
 from gapath.problem import Plan
-from gapath.running.config import Run, task_of
+from gapath.running.config import Run
 from gapath.store.durable import named, write_whole
 from gapath.store.inputs import watched
 from gapath.store.keys import run_key, setting_hash, versions
@@ -56,7 +54,7 @@ class Execution:
 
 
 def run_started(run: Run, optimum: Plan) -> RunStarted:
-    """Make a run's first event."""
+    """Make a run's first event; how it is recorded is no part of what it is."""
     return RunStarted(
         run.experiment,
         run.method.name,
@@ -64,41 +62,11 @@ def run_started(run: Run, optimum: Plan) -> RunStarted:
         run.problem,
         run.seed,
         run.trials,
-        run.settings,
+        {name: value for name, value in run.settings.items() if not name.startswith("recorder.")},
         versions(),
         optimum.path,
         optimum.cost,
     )
-
-
-def replay_events(started: RunStarted, kernels: str = AUTO) -> Iterator[Event]:
-    """Do a run again from what its log says of it.
-
-    Parameters
-    ----------
-    started : RunStarted
-        The first event of a log.
-    kernels : str
-        Which kernels compute (`gapath.planning.acceleration.with_kernels`).
-
-    Yields
-    ------
-    Event
-        What the run would emit now, from the second event on.
-
-    Raises
-    ------
-    InputError
-        If the log's settings are not those of this version, or have no such kernels.
-    """
-    task = with_kernels(task_of(started.settings), kernels)
-    batch = Batch(started.experiment, started.method, started.problem, started.seed, started.trials)
-    step = found = 0
-    for trial in task.trials(batch, task.optimum(started.problem)):
-        yield from trial.events(step)
-        step += trial.steps
-        found += trial.found
-    yield RunFinished(step, started.trials, found)
 
 
 def execute(run: Run, command: str, progress: bool = True) -> Execution:

@@ -73,9 +73,7 @@ def method_of(
         else:
             changed = [name for name in overridden if name != group]  # that chose the YAML
             usual |= {key: value for key, value in flat.items() if not _within(key, changed)}
-    if given.get("drive.known_map"):
-        given["drive.known_map"] = _title(str(given["drive.known_map"]))
-    return Method(str(choices[task.groups[0]]), _changes(given, usual))
+    return Method(str(choices[task.groups[0]]), changes_of(given, usual))
 
 
 def usual_values() -> dict[str, Any]:
@@ -107,7 +105,7 @@ def map_name(name: str, settings: Mapping[str, Any]) -> str:
     path = str(settings.get("path") or "")
     title = _title(path) if Path(path).stem == name else name
     given = {key: value for key, value in settings.items() if key not in _SHOWN_APART}
-    changes = _changes(flatten(given), flatten(_usual(name, settings["kind"])))
+    changes = changes_of(flatten(given), flatten(_usual(name, settings["kind"])))
     return with_changes(title, changes.items())
 
 
@@ -125,7 +123,10 @@ def _title(path: str) -> str:
     return folder if file.stem == "map" and folder not in ("", "..") else file.stem
 
 
-def _changes(given: Mapping[str, Value], usual: Mapping[str, Value]) -> dict[str, Value]:
+def changes_of(given: Mapping[str, Value], usual: Mapping[str, Value]) -> dict[str, Value]:
+    """Give the settings that differ from usual ones, "none" for what a shorter list lacks."""
+    if given.get("drive.known_map"):
+        given = {**given, "drive.known_map": _title(str(given["drive.known_map"]))}
     changed = {key: value for key, value in given.items() if usual.get(key) != value}
     gone = [key for key in usual if key not in given and "[" in key]  # of a list that is shorter
     return changed | dict.fromkeys(gone, "none")

@@ -11,7 +11,8 @@ from gapath.problem import Problem
 from gapath.store.inputs import Inputs, contents, without_paths
 from gapath.store.settings import Flat, text_of
 
-VERSIONED = ("gapath", "numpy", "numba", "mcap", "rosbags", "rerun-sdk", "hydra-core", "pyarrow")
+VERSIONED = ("gapath", "numpy", "numba", "mcap", "zstandard", "rosbags", "rerun-sdk", "hydra-core",
+             "pyarrow")  # fmt: skip
 
 _NO_SETTING = ("trials", "recorder", "map")
 """What makes no other setting: it changes no trial, or is told by what it comes to, the map."""

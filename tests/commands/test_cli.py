@@ -150,7 +150,7 @@ def test_the_same_file_with_other_settings_is_another_map(gapath, tmp_path):
         (["corner_cutting=maybe"], "corner_cutting: got maybe"),
         (["recorder.rerun.trials=[3]"], "recorder.rerun.trials: got [3]"),
         (["recorder.rerun.trials=[a]"], "recorder.rerun.trials"),
-        (["recorder.mcap.flush_every=0"], "recorder.mcap.flush_every: got 0"),
+        (["recorder.mcap.flush_every=9"], "recorder.mcap.flush_every: got an unknown name"),
         (["recorder=tape"], "recorder: got tape"),
         (["map=file"], "map.path: got nothing"),
         (["map=file", "map.path=gone.map"], "gone.map"),

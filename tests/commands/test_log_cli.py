@@ -27,6 +27,8 @@ from gapath.grid import GridMap
 from gapath.history.evolution import Evolution
 from gapath.problem import Answer, PlanStatus, Problem
 from gapath.recorders import mcap
+from gapath.running import again
+from gapath.store.keys import versions
 
 
 def run_events(trials=30):
@@ -70,8 +72,13 @@ def drive_events(seconds=1e-4):
     yield RunFinished(4, 2, 1)
 
 
+@pytest.fixture(autouse=True)
+def short_chunks(monkeypatch):
+    monkeypatch.setattr("gapath.recorders.mcap.log.CHUNK_MESSAGES", 10)
+
+
 def logged(events, folder):
-    recorder = mcap.Recorder(flush_every=10)
+    recorder = mcap.Recorder()
     recorder.open(str(folder))
     for event in events:
         recorder.record(event)
@@ -101,9 +108,16 @@ def cut(log):
 @pytest.fixture
 def replay(monkeypatch):
     """Let the run that is done again be whatever a test wants."""
-    module = SimpleNamespace(replay_events=lambda run, kernels: list(run_events())[1:])
-    monkeypatch.setitem(sys.modules, "gapath.running.experiment", module)
-    return module
+    made = SimpleNamespace(events=run_events, remarks=[])
+    monkeypatch.setattr(again, "made_again", lambda logged, kernels: made)
+    monkeypatch.setattr(again, "work", lambda made: 0)
+    monkeypatch.setattr(again, "events_again", lambda made: made.events())
+    return made
+
+
+VERSIONS = "made with gapath 0.1.0 ({gapath} here), ".format(**versions()) + ", ".join(
+    f"unknown {name}" for name in versions() if name != "gapath"
+)
 
 
 def call(capsys, *argv):
@@ -135,19 +149,19 @@ def test_info_of_drives(drive_log, capsys):
 
 
 def test_verify_of_drives_does_not_compare_wall_time(drive_log, replay, capsys):
-    replay.replay_events = lambda run, kernels: list(drive_events(seconds=5.0))[1:]
+    replay.events = lambda: drive_events(seconds=5.0)
     assert call(capsys, "verify", drive_log)[0] == 0
 
     def elsewhere():
-        for event in list(drive_events())[1:]:
+        for event in drive_events():
             if isinstance(event, Stepped) and event.step == 3:
                 event = dataclasses.replace(event, place=(0, 1))
             yield event
 
-    replay.replay_events = lambda run, kernels: elsewhere()
+    replay.events = elsewhere
     code, out, _ = call(capsys, "verify", drive_log)
     assert code == 1
-    assert "trial 1, step 3, Stepped.place: (0, 0) in the log, (0, 1) now" in out
+    assert "message 19, step 3, /pose.pose.position.y: 3.5 in the log, 2.5 now" in out
 
 
 def test_rerun_of_drives(drive_log, capsys):
@@ -158,15 +172,13 @@ def test_rerun_of_drives(drive_log, capsys):
 def test_info_of_a_log_that_was_cut_off(cut, capsys):
     code, out, _ = call(capsys, "info", cut)
     assert code == 0
-    assert "cut off or damaged" in out
-    assert f"gapath-log salvage {cut}" in out
+    assert "cut off or damaged" in out and f"gapath-log salvage {cut}" in out
 
 
 def test_salvage_then_info(cut, capsys):
-    count = sum(1 for _ in mcap.read_prefix(cut))
     code, out, _ = call(capsys, "salvage", cut)
     whole = cut.with_suffix("")
-    assert (code, out) == (0, f"{whole}: {count} events saved and read back\n")
+    assert (code, out) == (0, f"{whole}: 105 messages saved and read back\n")
     _, out, _ = call(capsys, "info", whole)
     assert "whole, but the run was interrupted" in out
 
@@ -182,22 +194,25 @@ def test_salvage_names_its_output(cut, capsys):
 
 def test_verify_of_what_is_reproduced(log, replay, capsys):
     code, out, _ = call(capsys, "verify", log)
-    assert (code, out) == (0, f"{log}: reproduced, 91 events are equal\n")
+    assert (code, out) == (0, f"{log}: reproduced, byte for byte, 127 messages; {VERSIONS}\n")
 
 
 def test_verify_of_an_interrupted_run_compares_what_is_there(cut, replay, capsys):
     call(capsys, "salvage", cut)
     code, out, _ = call(capsys, "verify", cut.with_suffix(""))
-    assert code == 0
-    assert "interrupted" in out
-    assert "reproduced" in out
+    assert code == 3
+    assert (
+        ": interrupted after trial 24, equal so far, byte for byte, 105 messages; made with" in out
+    )
 
 
 def test_verify_of_several_logs_says_a_line_of_each(log, replay, capsys, tmp_path):
-    replay.replay_events = lambda run, kernels: list(changed(3, weights=2.5)())[1:]
+    replay.events = changed(3, weights=2.5)
     code, out, err = call(capsys, "verify", log, log)
     assert (code, err) == (1, "")
-    assert [line.split(" equal")[0] for line in out.splitlines()] == [f"{log}: differs after 2"] * 2
+    begins = f"{log}: differs after 8 messages that are equal"
+    assert [line.partition(":")[0] for line in out.splitlines()] == [str(log)] * 2
+    assert out.count(begins) == 2
     bad = tmp_path / "bad.mcap"
     code, out, err = call(capsys, "verify", bad, log)
     assert code == 2
@@ -239,26 +254,28 @@ def other_gene():
 DIFFERENCES = {
     "cost": (
         changed(3, weights=2.5),
-        "trial 0, step 2, TrialFinished.answer.weights: 1.5 in the log, 2.5 now",
+        "message 8, step 2, /result.weights: 1.5 in the log, 2.5 now",
     ),
-    "gene": (other_gene, "trial 4, step 8, Evolved.evolution.chromosomes[1, 2]: 0 in the log, 9"),
+    "gene": (other_gene, "message 22, step 8, /ga_run.chromosomes[6]: 0 in the log, 9 now"),
     "path": (
         changed(3, path=np.zeros((1, 2), dtype=np.int32)),
-        "TrialFinished.answer.path: shape (3, 2) in the log, (1, 2) now",
+        "message 7, step 2, /path.poses[1]",
     ),
     "status": (
         changed(3, status=PlanStatus.INFEASIBLE),
-        "answer.status: <PlanStatus.FOUND",
+        "schema gapath_msgs/msg/Result in the log, message 8, step 2, /log now",
     ),
-    "shorter": (lambda: list(run_events())[:-1], "RunFinished in the log, nothing now"),
-    "longer": (lambda: [*run_events(), TrialStarted(99, 30, 7)], "nothing in the log"),
-    "kind": (lambda: [next(run_events()), RunFinished(0, 0, 0)], "TrialStarted in the log, RunFin"),
+    "shorter": (lambda: list(run_events())[:-1], ", step 60, /log in the log, nothing now"),
+    "kind": (
+        lambda: [next(run_events()), RunFinished(0, 0, 0)],
+        "schema gapath_msgs/msg/TrialStart in the log, message 5, step 0, /log now",
+    ),
 }
 
 
 @pytest.mark.parametrize(("events", "message"), DIFFERENCES.values(), ids=DIFFERENCES)
 def test_verify_names_the_first_difference(events, message, log, replay, capsys):
-    replay.replay_events = lambda run, kernels: list(events())[1:]
+    replay.events = events
     code, out, _ = call(capsys, "verify", log)
     assert code == 1
     assert "differs after" in out and message in out

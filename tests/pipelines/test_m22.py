@@ -42,7 +42,7 @@ PLANNERS = {
 def run(folder, experiment, grid, planner, trials=4, **values):
     made = build("planner", yaml_values("planner", planner) | values, "planner")
     problem = Problem(grid, grid.start, grid.target)
-    recorders = [mcap.Recorder(flush_every=100)]
+    recorders = [mcap.Recorder()]
     settings = plan_settings(planner, values)
     execute(
         Run(

@@ -4,6 +4,7 @@ import dataclasses
 import math
 import struct
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
 from gapath_example import bender
@@ -29,6 +30,7 @@ from gapath.planning.shortest_path import shortest_path
 from gapath.planning.simulation import plan_trials
 from gapath.problem import Answer, Plan, PlanStatus, Problem
 from gapath.recorders import mcap
+from gapath.recorders.mcap import log
 from gapath.tasks.plan import duration, trial_events
 
 
@@ -165,8 +167,13 @@ def logged(event):
     return dataclasses.replace(event, seconds=math.nan) if hasattr(event, "seconds") else event
 
 
-def write(events, folder, flush_every=100):
-    recorder = mcap.Recorder(flush_every=flush_every)
+def write(events, folder, chunk_messages=100):
+    with patch.object(log, "CHUNK_MESSAGES", chunk_messages):
+        return _write(events, folder)
+
+
+def _write(events, folder):
+    recorder = mcap.Recorder()
     recorder.open(str(folder))
     for event in events:
         recorder.record(event)

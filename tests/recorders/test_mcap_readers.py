@@ -34,7 +34,7 @@ OWN = "gapath_msgs/msg/"
 
 def test_a_foreign_reader_understands_it(tmp_path):
     run, *events = example()
-    log = write([run, *events], tmp_path, flush_every=5)
+    log = write([run, *events], tmp_path, chunk_messages=5)
     grid, found = run.problem.map, {}
     with log.open("rb") as file:
         reader = make_reader(file, validate_crcs=True, decoder_factories=[DecoderFactory()])

@@ -29,7 +29,7 @@ def run_of(*overrides):
         (["planner.population=120", "seed=7"], ["planner.population='120'", "seed=7.0"]),
         (["planner.vln=1000"], ["planner.vln=1000.0"]),
         (["planner=ga3"], ["planner.population=100.0", "planner.control_points='5'"]),
-        (["recorder.mcap.flush_every=7"], ["recorder.mcap.flush_every=7.0"]),
+        (["recorder.rerun.trials=[0]"], ["recorder.rerun.trials=[0.0]"]),
         (["task=drive"],
          ["task=drive", "drive.sensor.range='4'", "drive.changes.every=0.0", "trials=1.0"]),
         (["task=drive", "drive.step_limit=2000"],

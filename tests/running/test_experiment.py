@@ -12,7 +12,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from gapath.commands import log as log_cli
-from gapath.components import build
+from gapath.components import build, normalised
 from gapath.discovery import yaml_values
 from gapath.errors import InputError
 from gapath.events import TrialFinished
@@ -21,7 +21,8 @@ from gapath.planning.shortest_path import shortest_path
 from gapath.problem import Problem
 from gapath.recorders.mcap import read_events
 from gapath.running import config
-from gapath.running.experiment import execute, replay_events
+from gapath.running.again import events_again, made_again
+from gapath.running.experiment import execute
 from gapath.running.naming import Method
 from gapath.store import keys, records, runfolder, whole
 from gapath.store.records import Manifest
@@ -31,7 +32,7 @@ from gapath.tasks.plan import Task as PlanTask
 
 def make_run(folder, planner="ga3", map_class="kg18_test2", trials=3, recorders=("mcap",)):
     grid = Reader(map_class, 0).read()
-    settings = yaml_values("planner", planner)
+    settings = normalised("planner", yaml_values("planner", planner), "planner")
     return config.Run(
         "test",
         Method(planner),
@@ -40,7 +41,17 @@ def make_run(folder, planner="ga3", map_class="kg18_test2", trials=3, recorders=
         [build("recorder", yaml_values("recorder", name), name) for name in recorders],
         11,
         trials,
-        flatten({"task": "plan", "planner": settings}),
+        flatten(
+            {
+                "task": "plan",
+                "name": "test",
+                "map": yaml_values("map", map_class),
+                "seed": 11,
+                "trials": trials,
+                "corner_cutting": "allow",
+                "planner": settings,
+            }
+        ),
         str(folder),
         False,
     )
@@ -51,8 +62,8 @@ def test_a_log_says_enough_to_do_the_run_again(planner, tmp_path, capsys):
     execution = execute(make_run(tmp_path, planner), "test")
     log = execution.folder / "run.mcap"
     events = list(read_events(log))
-    again = list(replay_events(events[0]))
-    assert [type(event) for event in events[1:]] == [type(event) for event in again]
+    again = list(events_again(made_again(events[0])))
+    assert [type(event) for event in events] == [type(event) for event in again]
     assert log_cli.main(["verify", str(log)]) == 0
 
 

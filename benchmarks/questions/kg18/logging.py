@@ -51,7 +51,7 @@ class TrialLog:
         run = Run(
             "logging", Method("ga1"), problem, PlanTask(planner), [], 0, BATCH, {}, folder, False
         )
-        self.recorder = mcap.Recorder(flush_every=400)
+        self.recorder = mcap.Recorder()
         self.recorder.open(folder)
         self.recorder.record(run_started(run, shortest_path(problem)))
 

@@ -41,7 +41,7 @@ def _run(problem: Problem, name: str, trials: int, threads: int) -> Run:
 def measure(quick: bool) -> list[Row]:
     trials = 20 if quick else 1000
     rows: list[Row] = []
-    recorder = mcap.Recorder(flush_every=100)
+    recorder = mcap.Recorder()
     _execute(_run(make_problem(MAPS[0]), SETTINGS[0], 2, 1), [recorder])  # start-up
     for problem in map(make_problem, MAPS):
         for name in SETTINGS:

@@ -1,6 +1,24 @@
 """The log: every event of a run in one MCAP file, and the events back from it."""
 
-from gapath.recorders.mcap.log import FILE, Recorder, salvage
-from gapath.recorders.mcap.reader import count_messages, read_events, read_prefix
+from gapath.recorders.mcap.compare import Comparison, compare
+from gapath.recorders.mcap.description import LOG_VERSION
+from gapath.recorders.mcap.file.walk import LARGE, USUAL, Limits
+from gapath.recorders.mcap.log import FILE, Recorder
+from gapath.recorders.mcap.reader import look, read_events, read_prefix
+from gapath.recorders.mcap.salvage import Saved, salvage
 
-__all__ = ["FILE", "Recorder", "count_messages", "read_events", "read_prefix", "salvage"]
+__all__ = [
+    "FILE",
+    "LARGE",
+    "LOG_VERSION",
+    "USUAL",
+    "Comparison",
+    "Limits",
+    "Recorder",
+    "Saved",
+    "compare",
+    "look",
+    "read_events",
+    "read_prefix",
+    "salvage",
+]

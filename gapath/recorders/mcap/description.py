@@ -6,23 +6,32 @@ Numbers are written so that they come back exactly; the arrays are attachments.
 import hashlib
 import io
 import json
-from collections.abc import Iterable, Mapping
-from typing import Any
+import math
+from bisect import bisect_right
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.errors import require
+from gapath.errors import InputError, require
 from gapath.events import RunStarted
 from gapath.grid import Field, GridMap
 from gapath.problem import CornerCutting, Problem
 from gapath.scenario.listed import Queries
 from gapath.store.settings import of_text, text_of
 
-LOG_VERSION = "5"
+LOG_VERSION = "6"
 """Raised whenever an older reader would misread a log."""
 
-_READ = ("4", LOG_VERSION)  # a log of version 4 has no population, and is else the same
+_READ = ("4", "5", LOG_VERSION)
+"""A log of version 5 has settings of recorders and its chunks end elsewhere; one of version 4 has
+no population besides."""
+
+LOST = "gapath_lost"
+"""Name of the metadata record of a log that was saved and lacks something."""
 
 NAME = "gapath"
 """Name of the metadata record."""
@@ -39,13 +48,59 @@ _NPY = ".npy"
 _VERSION_OF = "version/"  # before the names of packages
 
 
-def metadata(run: RunStarted) -> dict[str, str]:
+@dataclass(frozen=True)
+class Lost:
+    """What a log that was saved lacks before its last message.
+
+    Parameters
+    ----------
+    messages : tuple of (int, int)
+        First and last number of messages that are missing in between, in rising order.
+    trials : frozenset of int
+        The trials that lack something: readers leave them out.
+    """
+
+    messages: tuple[tuple[int, int], ...] = ()
+    trials: frozenset[int] = frozenset()
+
+    def has(self, number: int) -> bool:
+        """Tell whether a message is one of these."""
+        place = bisect_right(self.messages, (number, math.inf)) - 1
+        return place >= 0 and number <= self.messages[place][1]
+
+    @property
+    def metadata(self) -> dict[str, dict[str, str]]:
+        """The record that says so, if there is anything to say: name -> entries."""
+        if not self.messages:
+            return {}
+        messages = " ".join(f"{first}-{last}" for first, last in self.messages)
+        return {LOST: {"messages": messages, "trials": " ".join(map(str, sorted(self.trials)))}}
+
+    @classmethod
+    def of(cls, text: Mapping[str, str]) -> Self:
+        """Read such a record's entries; raises whatever Python raises where they are others."""
+        pairs = (pair.partition("-")[::2] for pair in text["messages"].split())
+        messages = tuple((int(first), int(last)) for first, last in pairs)
+        ends = [number for pair in messages for number in pair]
+        require(ends == sorted(ends) and len(ends) <= _MOST_LOST, LOST, ends[:9], "rising numbers")
+        return cls(messages, frozenset(map(int, text["trials"].split())))
+
+
+NOTHING = Lost()
+"""What most logs lack."""
+
+_MOST_LOST = 2000
+
+
+def metadata(run: RunStarted, version: str = LOG_VERSION) -> dict[str, str]:
     """Describe a run, all but its arrays.
 
     Parameters
     ----------
     run : RunStarted
         The run's first event.
+    version : str
+        The log's.
 
     Returns
     -------
@@ -54,7 +109,7 @@ def metadata(run: RunStarted) -> dict[str, str]:
     """
     problem = run.problem
     text = {
-        "gapath_log_version": LOG_VERSION,
+        "gapath_log_version": version,
         "experiment": run.experiment,
         "method": run.method,
         "task": run.task,
@@ -127,53 +182,95 @@ def run_started(text: Mapping[str, str], files: Mapping[str, bytes]) -> RunStart
     Raises
     ------
     InputError
-        If the log has another version, or differs from what was written.
-    Exception
-        If an entry is missing or is no number: whatever Python or NumPy raise.
+        If the log has another version, differs from what was written, or an entry is missing or
+        not what it must be.
     """
     version = text.get("gapath_log_version")
-    require(version in _READ, "gapath_log_version", version, " or ".join(_READ))
-    written = dict(text)
-    digest = written.pop("sha256")
+    require(version in _READ, "gapath_log_version", version, f"one of {', '.join(_READ)}")
+    written, told = dict(text), partial(_told, text)
+    digest = written.pop("sha256", None)
     require(_digest(written, files) == digest, "sha256", digest, "the digest of what is there")
+    arrays = _Arrays(files)
     return RunStarted(
-        experiment=text["experiment"],
-        method=text["method"],
-        task=text["task"],
+        experiment=told("experiment"),
+        method=told("method"),
+        task=told("task"),
         problem=Problem(
-            _grid_map(_MAP, text, files),
-            _field(text["start"]),
-            _field(text["target"]),
-            CornerCutting[text["corner_cutting"]],
-            {name: _grid_map(name, text, files) for name in json.loads(text["maps"])},
-            queries=_queries(_array(files[QUERIES])) if QUERIES in files else None,
+            _grid_map(_MAP, told, arrays),
+            told("start", _field),
+            told("target", _field),
+            told("corner_cutting", CornerCutting.__getitem__),
+            {name: _grid_map(name, told, arrays) for name in told("maps", _names)},
+            queries=_queries(arrays[QUERIES]) if QUERIES in files else None,
         ),
-        seed=int(text["seed"]),
-        trials=int(text["trials"]),
-        settings=of_text(text["settings"]),
+        seed=told("seed", int),
+        trials=told("trials", int),
+        settings=told("settings", of_text),
         versions={
             name.removeprefix(_VERSION_OF): version
             for name, version in text.items()
             if name.startswith(_VERSION_OF)
         },
-        optimal_path=_array(files[OPTIMAL_PATH]),
-        optimal_cost=float(text["optimal_cost"]),
+        optimal_path=arrays[OPTIMAL_PATH],
+        optimal_cost=told("optimal_cost", float),
     )
 
 
-def _grid_map(name: str, text: Mapping[str, str], files: Mapping[str, bytes]) -> GridMap:
-    x, y, yaw = map(float, text[f"{name}_origin"].split())
-    start, target = text[f"{name}_start"], text[f"{name}_target"]
+def _told(text: Mapping[str, str], name: str, read: Callable[[str], Any] = str) -> Any:
+    """Read an entry; raises InputError that names it."""
+    try:
+        return read(text[name])
+    except Exception as error:  # whatever Python raises at what is no such value
+        found = repr(text[name]) if name in text else "nothing"
+        raise InputError(f"metadata, {name}", found, "what gapath writes there") from error
+
+
+class _Arrays:
+    """The arrays that attachments hold, by name."""
+
+    def __init__(self, files: Mapping[str, bytes]) -> None:
+        self._files = files
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        try:
+            array: NDArray[Any] = np.load(io.BytesIO(self._files[name]), allow_pickle=False)
+        except Exception as error:  # whatever NumPy raises at what is no array
+            raise InputError(f"attachment {name}", type(error).__name__, "an array") from error
+        shape, kind = _SHAPES.get(name, (0, "f"))
+        good = array.ndim == 2 and array.dtype.kind == kind and shape in (0, array.shape[1])
+        require(good, f"attachment {name}", f"{array.dtype} {array.shape}", "another array")
+        return array
+
+
+_SHAPES = {OPTIMAL_PATH: (2, "i"), QUERIES: (7, "f")}
+
+
+def _grid_map(name: str, told: Callable[..., Any], arrays: _Arrays) -> GridMap:
     return GridMap(
-        name=text[f"{name}_name"],
-        weights=_array(files[name + _NPY]),
-        start=_field(start) if start else None,
-        target=_field(target) if target else None,
-        instance=int(text[f"{name}_instance"]),
-        source=text[f"{name}_source"],
-        resolution=float(text[f"{name}_resolution"]),
-        origin=(x, y, yaw),
+        name=told(f"{name}_name"),
+        weights=arrays[name + _NPY],
+        start=told(f"{name}_start", _maybe_field),
+        target=told(f"{name}_target", _maybe_field),
+        instance=told(f"{name}_instance", int),
+        source=told(f"{name}_source"),
+        resolution=told(f"{name}_resolution", float),
+        origin=told(f"{name}_origin", _pose),
     )
+
+
+def _names(text: str) -> list[str]:
+    names: list[str] = json.loads(text)
+    assert isinstance(names, list) and all(isinstance(name, str) for name in names)
+    return names
+
+
+def _pose(text: str) -> tuple[float, float, float]:
+    x, y, yaw = map(float, text.split())
+    return x, y, yaw
+
+
+def _maybe_field(text: str) -> Field | None:
+    return _field(text) if text else None
 
 
 def _numbers(values: Iterable[float]) -> str:
@@ -189,11 +286,6 @@ def _npy(array: NDArray[np.generic], dtype: str) -> bytes:
     file = io.BytesIO()
     np.save(file, np.ascontiguousarray(array, dtype=dtype), allow_pickle=False)
     return file.getvalue()
-
-
-def _array(file: bytes) -> NDArray[Any]:
-    array: NDArray[Any] = np.load(io.BytesIO(file), allow_pickle=False)
-    return array
 
 
 def _digest(text: Mapping[str, str], files: Mapping[str, bytes]) -> str:

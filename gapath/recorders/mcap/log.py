@@ -1,20 +1,22 @@
-"""The log: every event of a run in one MCAP file, and the events back from it.
+"""The log: every event of a run in one MCAP file.
 
-Profile ``ros2``: whatever reads ROS 2 bags opens it. The same events give the same
-bytes.
+Profile ``ros2``: whatever reads ROS 2 bags opens it. The same events give the same bytes.
 """
 
 import os
-import tempfile
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Any
 
+from mcap.records import Attachment, Channel, Message, Metadata, Schema
 from mcap.writer import Writer
 
-from gapath.errors import Checks, InputError, require
+from gapath.errors import InputError
 from gapath.events import Event, RunStarted
 from gapath.recorders.mcap import description
+from gapath.recorders.mcap.description import NOTHING
+from gapath.recorders.mcap.file.walk import Entry
 from gapath.recorders.mcap.format import (
     LIBRARY,
     MAX_CHUNK,
@@ -25,73 +27,66 @@ from gapath.recorders.mcap.format import (
     schema,
 )
 from gapath.recorders.mcap.messages import Messages
-from gapath.recorders.mcap.reader import read_events, read_prefix
 from gapath.store.durable import new_file, part_of, publish
 
 FILE = "run.mcap"
 """Name of the log in a run folder."""
 
+CHUNK_MESSAGES, CHUNK_BYTES = 400, 1 << 18
+"""A chunk ends after so many messages or bytes, and after the run's first event: however a run is
+recorded, its log has the same bytes."""
+
 _MESSAGE_HEAD = 31  # bytes of a message record before its data
 
 
-@dataclass
-class Recorder:
-    """Writes ``run.mcap``.
+class LogWriter:
+    """Writes events, or messages that were events once, as a log.
 
     Parameters
     ----------
-    flush_every : int
-        Messages after which what was logged is handed to the operating system: no more
-        than these are lost when the process is killed.
-
-    Raises
-    ------
-    InputError
-        If it is not from 1 to 1000000.
+    file : binary file
+        Where to; it needs ``write``, ``tell`` and ``flush``.
+    version : str
+        What the log calls itself: another version only to write an older log again.
+    lost : Lost
+        What is not in the log, of one that was saved; `skipped` counts how much of it was not
+        written so far.
     """
 
-    records = True
-
-    flush_every: int
-    _path: Path = field(init=False, repr=False)
-    _file: IO[bytes] | None = field(init=False, repr=False, default=None)
-    _writer: Any = field(init=False, repr=False)
-    _channels: dict[str, int] = field(init=False, repr=False)
-    _schemas: dict[str, int] = field(init=False, repr=False)
-    _messages: Messages = field(init=False, repr=False)
-    _count: int = field(init=False, repr=False)
-    _bytes: int = field(init=False, repr=False)
-
-    def __post_init__(self) -> None:
-        Checks(self, "recorder.mcap").whole("flush_every", 1, 10**6)
-
-    def check(self, trials: int) -> None:
-        """Accept every run; its size is bounded while it is written."""
-
-    def open(self, folder: str) -> None:
-        """Start ``run.mcap.part`` in an existing folder."""
-        self._path = Path(folder) / FILE
-        self._file = new_file(self._part)
-        self._count = self._bytes = 0
-        self._writer = Writer(self._file, enable_data_crcs=True)
+    def __init__(
+        self, file: Any, version: str = description.LOG_VERSION, lost: description.Lost = NOTHING
+    ) -> None:
+        self._version, self._lost, self.skipped = version, lost, 0
+        self._writer = Writer(file, chunk_size=2 * MAX_CHUNK, enable_data_crcs=True)
         self._writer.start(profile=PROFILE, library=LIBRARY)
+        self._channels: dict[str, int] = {}
+        self._schemas: dict[str, int] = {}
+        self._messages: Messages | None = None
+        self._count = self._bytes = self._in_chunk = self._chunk_bytes = self._head = 0
 
-    @property
-    def _part(self) -> Path:
-        return part_of(self._path)
+    def write(self, event: Event) -> Iterator[Entry]:
+        """Write what an event comes to; the first event also gives metadata and attachments.
 
-    def record(self, event: Event) -> None:
-        """Write an event's messages; the first event also gives metadata and attachments.
+        Parameters
+        ----------
+        event : Event
+            The next event of the run.
+
+        Yields
+        ------
+        Metadata, Attachment, Schema, Channel or Message
+            What has been written.
 
         Raises
         ------
         InputError
-            If the log would grow past half of what `read_events` accepts.
+            If the log would grow past half of what can be read.
         OSError
             If the file cannot be written.
         """
         if isinstance(event, RunStarted):
-            self._begin(event)
+            yield from self.begin(event)
+        assert self._messages is not None, "the run's first event comes first"
         for topic, step, data in self._messages.records(event):
             self._bytes += len(data) + _MESSAGE_HEAD
             if len(data) > MAX_CHUNK // 2 or self._bytes > MAX_LOG // 2:
@@ -100,29 +95,96 @@ class Recorder:
                     f"{len(data)} bytes in a message, {self._bytes} in the run",
                     f"at most {MAX_CHUNK // 2} and {MAX_LOG // 2}: fewer epochs or trials",
                 )
-            time = step * NS_PER_STEP
-            self._writer.add_message(self._channel(topic), time, data, time, self._count)
+            number, time = self._count, step * NS_PER_STEP
             self._count += 1
-            if self._count % self.flush_every == 0:
-                self._writer.flush()
+            if self._lost.has(number):
+                self.skipped += 1
+            else:
+                yield from self.put(topic, time, data, time, number)
+        if isinstance(event, RunStarted):
+            self._end_head()
 
-    def _begin(self, run: RunStarted) -> None:
+    def begin(self, run: RunStarted) -> Iterator[Entry]:
+        """Write the metadata and attachments that a run's first event comes to."""
         self._messages = Messages(run)
-        self._writer.add_metadata(description.NAME, description.metadata(run))
+        self._head = sum(1 for _ in self._messages.records(run))
+        told = {description.NAME: description.metadata(run, self._version)}
+        for name, text in (told | self._lost.metadata).items():
+            self._writer.add_metadata(name, text)
+            yield Metadata(name, text)
         for name, data in description.attachments(run).items():
-            self._writer.add_attachment(0, 0, name, "application/octet-stream", data)
-        self._channels, self._schemas = {}, {}
+            self._writer.add_attachment(0, 0, name, _BYTES, data)
+            yield Attachment(0, 0, name, _BYTES, data)
 
-    def _channel(self, topic: str) -> int:
-        """Give the number of a topic's channel, which is made when it is first written to."""
+    def put(
+        self, topic: str, time: int, data: bytes, published: int, sequence: int
+    ) -> Iterator[Entry]:
+        """Write a message on a topic, whose channel is made when it is first written to."""
+        if sequence >= self._head:
+            self._end_head()
         if topic not in self._channels:
             name = TOPICS[topic]
             if name not in self._schemas:
                 text = schema(topic)
-                self._schemas[name] = self._writer.register_schema(name, "ros2msg", text)
+                number = self._schemas[name] = self._writer.register_schema(name, "ros2msg", text)
+                yield Schema(number, text, "ros2msg", name)
             number = self._writer.register_channel(topic, "cdr", self._schemas[name])
             self._channels[topic] = number
-        return self._channels[topic]
+            yield Channel(number, topic, "cdr", {}, self._schemas[name])
+        channel = self._channels[topic]
+        self._writer.add_message(channel, time, data, published, sequence)
+        self._in_chunk += 1
+        self._chunk_bytes += len(data) + _MESSAGE_HEAD
+        if self._in_chunk >= CHUNK_MESSAGES or self._chunk_bytes >= CHUNK_BYTES:
+            self.flush()
+        yield Message(channel, time, data, published, sequence)
+
+    def _end_head(self) -> None:
+        """End the first chunk: a killed run leaves something whole from its first moment on."""
+        if self._head:
+            self._head = 0
+            self.flush()
+
+    def flush(self) -> None:
+        """End a chunk, and hand it to the operating system."""
+        self._writer.flush()
+        self._in_chunk = self._chunk_bytes = 0
+
+    def finish(self) -> None:
+        """Write the log's end."""
+        self._writer.finish()
+
+
+_BYTES = "application/octet-stream"
+
+
+@dataclass
+class Recorder:
+    """Writes ``run.mcap``."""
+
+    records = True
+
+    _path: Path = field(init=False, repr=False)
+    _file: IO[bytes] | None = field(init=False, repr=False, default=None)
+    _writer: LogWriter = field(init=False, repr=False)
+
+    def check(self, trials: int) -> None:
+        """Accept every run; its size is bounded while it is written."""
+
+    def open(self, folder: str) -> None:
+        """Start ``run.mcap.part`` in an existing folder."""
+        self._path = Path(folder) / FILE
+        self._file = new_file(self._part)
+        self._writer = LogWriter(self._file)
+
+    @property
+    def _part(self) -> Path:
+        return part_of(self._path)
+
+    def record(self, event: Event) -> None:
+        """Write what an event comes to; raises InputError or OSError as `LogWriter.write` does."""
+        for _ in self._writer.write(event):
+            pass
 
     def close(self) -> list[str]:
         """Finish the log, make it durable, and give it its name."""
@@ -135,49 +197,7 @@ class Recorder:
         return [self._path.name]
 
     def abort(self) -> None:
-        """Leave ``run.mcap.part`` as it is, for `salvage`."""
-        if self._file is not None:
-            self._file.close()
-
-
-def salvage(path: str | Path, output: str | Path) -> int:
-    """Write what is whole of a log that a killed run left as a log of its own.
-
-    Parameters
-    ----------
-    path : str or Path
-        A log without an end, such as ``run.mcap.part``.
-    output : str or Path
-        The new log; must not exist.
-
-    Returns
-    -------
-    int
-        Number of events saved; the new log was read back to check them.
-
-    Raises
-    ------
-    InputError
-        If there is nothing to save, or the output exists or has no folder.
-    OSError
-        If the output cannot be written.
-    """
-    output = Path(output)
-    require(output.parent.is_dir(), output, "no such folder", "a file in an existing folder")
-    require(not output.exists(), output, "a file that exists", "a new name")
-    recorder = Recorder(flush_every=1000)
-    with tempfile.TemporaryDirectory(dir=output.parent) as folder:
-        count = 0
-        recorder.open(folder)
-        try:
-            for event in read_prefix(path):
-                recorder.record(event)
-                count += 1
-            recorder.close()
-        finally:
-            recorder.abort()
-        whole = Path(folder) / FILE
-        saved = sum(1 for _ in read_events(whole))
-        require(saved == count, output, f"{saved} events read back", f"{count}")
-        publish(whole, output)
-    return count
+        """Leave ``run.mcap.part`` with all that was recorded, for `salvage`."""
+        if self._file is not None and not self._file.closed:
+            with self._file:
+                self._writer.flush()

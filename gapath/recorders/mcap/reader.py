@@ -1,37 +1,59 @@
 """Reading a log, which may come from anywhere.
 
-Nothing is inflated before its size is known, and whatever is wrong is one `InputError`
-that names the file.
+Whatever is wrong is one `InputError` that names the file.
 """
 
 import contextlib
-import io
-import os
-import zlib
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import IO, Any, TypeVar
+from typing import IO, TypeVar
 
-import zstandard
-from mcap.exceptions import EndOfFile
-from mcap.records import Attachment, Channel, Chunk, DataEnd, Header, Message, Metadata
-from mcap.stream_reader import StreamReader
+from mcap.records import Attachment, Channel, Message, Metadata
 
 from gapath.errors import InputError, require
 from gapath.events import Event, RunStarted
 from gapath.recorders.mcap import description
-from gapath.recorders.mcap.cdr import Record
-from gapath.recorders.mcap.format import LIBRARY, MAX_CHUNK, MAX_LOG, NS_PER_STEP, PROFILE
+from gapath.recorders.mcap.file.walk import LARGE, Limits, entries, opened
+from gapath.recorders.mcap.format import NS_PER_STEP
 from gapath.recorders.mcap.messages import event
 
-_WHOLE = "a whole log of gapath"
-_BEGUN = "a log of gapath that is whole at least up to the first message"
+WHOLE = "a whole log of gapath"
+BEGUN = "a log of gapath that is whole at least up to the first message"
 
 T = TypeVar("T")
 
 
-def read_events(path: str | Path) -> Iterator[Event]:
+class Head:
+    """What a log says of its run, gathered entry by entry.
+
+    Parameters
+    ----------
+    text : dict of str to str
+        The metadata.
+    lost : Lost
+        What is not in the log, of one that was saved.
+    """
+
+    def __init__(self) -> None:
+        self.text: dict[str, str] = {}
+        self.lost = description.NOTHING
+        self._files: dict[str, bytes] = {}
+
+    def take(self, entry: Metadata | Attachment) -> RunStarted | None:
+        """Take metadata or an attachment; the last of them makes the run's first event."""
+        if isinstance(entry, Attachment):
+            self._files[entry.name] = entry.data
+            last = entry.name == description.OPTIMAL_PATH
+            return description.run_started(self.text, self._files) if last else None
+        if entry.name == description.NAME:
+            self.text = entry.metadata
+        elif entry.name == description.LOST:
+            self.lost = description.Lost.of(entry.metadata)
+        return None
+
+
+def read_events(path: str | Path, limits: Limits = LARGE) -> Iterator[Event]:
     """Read a whole log.
 
     The file is checked from end to end before the first event is given.
@@ -40,6 +62,8 @@ def read_events(path: str | Path) -> Iterator[Event]:
     ----------
     path : str or Path
         A log written by `Recorder`.
+    limits : Limits
+        What it may take.
 
     Yields
     ------
@@ -50,27 +74,35 @@ def read_events(path: str | Path) -> Iterator[Event]:
     ------
     InputError
         If the file cannot be read, is not a log of gapath, has another version, is cut
-        off or damaged, or would inflate to more than `MAX_CHUNK` or `MAX_LOG`.
+        off or damaged, has anything in it that gapath does not write, or exceeds the limits.
     """
+    with suggesting(path, limits), refusing(path, WHOLE), opened(path) as file:
+        for _ in _events(file, limits, lambda topic: False):
+            pass
+        yield from _events(file, limits)
+
+
+@contextlib.contextmanager
+def suggesting(path: str | Path, limits: Limits) -> Iterator[None]:
+    """Say of a log that cannot be read how to save the rest, if there is any."""
     try:
-        with _refusing(path, _WHOLE), Path(path).open("rb") as file:
-            ends = sum(isinstance(record, DataEnd) for record in _records(file))
-            require(ends == 1, "end of data", f"{ends} records", "one")
-            yield from _events(file)
+        yield
     except InputError as error:
-        if not _has_begun(path):
+        if not _has_begun(path, limits):
             raise
         expected = f"{error.expected}; to save the rest: gapath-log salvage {path}"
         raise InputError(error.where, error.value, expected) from error
 
 
-def read_prefix(path: str | Path) -> Iterator[Event]:
+def read_prefix(path: str | Path, limits: Limits = LARGE) -> Iterator[Event]:
     """Read a log up to where it is cut off or damaged.
 
     Parameters
     ----------
     path : str or Path
         A log written by `Recorder`, or what was left of one.
+    limits : Limits
+        What it may take.
 
     Yields
     ------
@@ -82,108 +114,81 @@ def read_prefix(path: str | Path) -> Iterator[Event]:
     InputError
         If not even the first event is whole.
     """
-    with _refusing(path, _BEGUN), Path(path).open("rb") as file:
-        yield from _until_damage(_events(file))
+    with refusing(path, BEGUN), opened(path) as file:
+        yield from _until_damage(_events(file, limits))
 
 
-def count_messages(path: str | Path) -> Counter[str]:
-    """Count the messages of each topic, up to where the log is cut off or damaged.
+def look(path: str | Path, limits: Limits, seen: Counter[str]) -> Iterator[Event]:
+    """Read only how a run began and how each of its trials ended, but check the whole log.
 
     Parameters
     ----------
     path : str or Path
         A log written by `Recorder`, or what was left of one.
+    limits : Limits
+        What it may take.
+    seen : Counter of str
+        Counts the messages of each topic, up to where the log is cut off or damaged.
 
-    Returns
-    -------
-    Counter of str
-        Number of messages by topic.
+    Yields
+    ------
+    RunStarted, Finished or RunFinished
+        Those events alone.
 
     Raises
     ------
     InputError
-        If not even the run's first event is whole.
+        As `read_events`, when the place is reached.
     """
-    with _refusing(path, _BEGUN), Path(path).open("rb") as file:
-        contents = _until_damage(_contents(file))
-        return Counter(item.topic for item in contents if not isinstance(item, RunStarted))
+
+    def wanted(topic: str) -> bool:
+        seen[topic] += 1
+        return topic in (*ENDS, RUN_END)
+
+    with refusing(path, WHOLE), opened(path) as file:
+        yield from _events(file, limits, wanted)
 
 
-def _has_begun(path: str | Path) -> bool:
+RUN_END = "/run_end"
+ENDS = ("/result", "/drive_end")
+"""Topics of the last messages of a run, and of trials."""
+
+
+def _has_begun(path: str | Path, limits: Limits) -> bool:
     """Tell whether a log is whole up to its first message, so that there is something to save."""
     try:
-        return next(read_prefix(path), None) is not None
+        return next(read_prefix(path, limits), None) is not None
     except InputError:
         return False
 
 
-def _events(file: IO[bytes]) -> Iterator[Event]:
-    for item in _contents(file):
-        found = item if isinstance(item, RunStarted) else event(*item)
-        if found is not None:
-            yield found
-
-
-def _contents(file: IO[bytes]) -> Iterator[RunStarted | Record]:
-    """Give the run's first event, then every message."""
-    text: dict[str, str] = {}
-    files: dict[str, bytes] = {}
-    topics: dict[int, str] = {}
+def _events(
+    file: IO[bytes], limits: Limits, wanted: Callable[[str], bool] = lambda topic: True
+) -> Iterator[Event]:
+    """Give the run's first event, then those of all messages of wanted topics."""
+    head, topics = Head(), dict[int, str]()
     started, count = False, 0
-    for record in _records(file):
-        if isinstance(record, Metadata) and record.name == description.NAME:
-            text = record.metadata
-        elif isinstance(record, Attachment):
-            files[record.name] = record.data
-            if record.name == description.OPTIMAL_PATH:
-                yield description.run_started(text, files)
-                started = True
-        elif isinstance(record, Chunk):
+    for entry in entries(file, limits):
+        if isinstance(entry, Message):
             require(started, "metadata", "none before the first message", "a run's description")
-            for item in _inflate(record):
-                if isinstance(item, Channel):
-                    topics[item.id] = item.topic
-                elif isinstance(item, Message):
-                    # A damaged record may be skipped as one of an unknown kind.
-                    require(item.sequence == count, "message", item.sequence, f"number {count}")
-                    count += 1
-                    step = item.log_time // NS_PER_STEP
-                    yield Record(topics[item.channel_id], step, item.data)
+            if entry.sequence != count:
+                missing = (count, entry.sequence - 1)
+                good = missing in head.lost.messages
+                require(good, "message", entry.sequence, f"number {count}")
+            count = entry.sequence + 1
+            topic = topics[entry.channel_id]
+            if wanted(topic):
+                found = event(topic, entry.log_time // NS_PER_STEP, entry.data)
+                if found is not None and getattr(found, "trial", None) not in head.lost.trials:
+                    yield found
+        elif isinstance(entry, Channel):
+            topics[entry.id] = entry.topic
+        elif isinstance(entry, Metadata | Attachment):
+            run = head.take(entry)
+            if run is not None:
+                started = True
+                yield run
     require(started, "metadata", "none", "a run's description")
-
-
-def _records(file: IO[bytes]) -> Iterator[Any]:
-    """Walk through a file from its start; chunks stay as they are, their sizes checked."""
-    size = os.fstat(file.fileno()).st_size
-    file.seek(0)
-    inflated = 0
-    reader = StreamReader(file, emit_chunks=True, validate_crcs=True, record_size_limit=size)
-    for record in reader.records:
-        if isinstance(record, Header):
-            found = (record.profile, record.library)
-            require(found == (PROFILE, LIBRARY), "profile, library", found, f"{PROFILE}, {LIBRARY}")
-        elif isinstance(record, Chunk):
-            inflated += record.uncompressed_size
-            require(
-                record.uncompressed_size <= MAX_CHUNK and inflated <= MAX_LOG,
-                "inflated size",
-                f"{record.uncompressed_size} bytes in a chunk, {inflated} so far",
-                f"at most {MAX_CHUNK} and {MAX_LOG}",
-            )
-        yield record
-
-
-def _inflate(chunk: Chunk) -> Iterator[Any]:
-    require(chunk.compression == "zstd", "compression", repr(chunk.compression), "zstd")
-    # The frame's own header decides how much is allocated, so it must not lie either.
-    size = zstandard.frame_content_size(chunk.data)
-    require(size == chunk.uncompressed_size, "chunk", f"{size} bytes", chunk.uncompressed_size)
-    data = zstandard.ZstdDecompressor().decompress(chunk.data)
-    crc = zlib.crc32(data)
-    require(crc == chunk.uncompressed_crc, "chunk", f"CRC {crc}", chunk.uncompressed_crc)
-    # One record at a time: small records take ten times their bytes as objects.
-    with contextlib.suppress(EndOfFile):
-        yield from StreamReader(io.BytesIO(data), skip_magic=True, record_size_limit=size).records
 
 
 def _until_damage(items: Iterator[T]) -> Iterator[T]:
@@ -193,12 +198,13 @@ def _until_damage(items: Iterator[T]) -> Iterator[T]:
 
 
 @contextlib.contextmanager
-def _refusing(path: str | Path, expected: str) -> Iterator[None]:
+def refusing(path: str | Path, expected: str) -> Iterator[None]:
     """Turn whatever the libraries raise at a bad file into one `InputError`."""
     try:
         yield
     except InputError as error:
-        raise InputError(f"{path}: {error.where}", error.value, error.expected) from error
+        where = error.where.removeprefix(f"{path}: ")
+        raise InputError(f"{path}: {where}", error.value, error.expected) from error
     except OSError as error:
         raise InputError(path, error.strerror or error, "a readable file") from error
     except Exception as error:

@@ -1,0 +1,1 @@
+"""What lies in a log, byte by byte: its records, and its end."""

@@ -1,0 +1,137 @@
+"""A log that was altered by somebody who knows the format is never called reproduced.
+
+Whatever a log has is altered, a thing at a time, and every checksum made anew.
+"""
+
+import struct
+
+import numpy as np
+import pytest
+from altering import Parts, alterations, put_together, taken_apart
+from hydra import compose, initialize_config_dir
+from mcap.writer import CompressionType, IndexType
+from omegaconf import OmegaConf
+from scale import rounds
+
+from gapath.commands import log as log_cli
+from gapath.recorders.mcap import description
+from gapath.running import again
+from gapath.running.config import conf_folder, make_run
+from gapath.running.experiment import execute
+
+SMALL = ["map=field_rooms", "map.width=40", "map.height=30"]
+RUNS = {
+    "plan": ["planner=ga1", "planner.population=6", "planner.max_epochs=3", "trials=2"],
+    "memetic": ["planner=memetic_first", "trials=2"],
+    "visibility": ["planner=visibility_astar", "planner.robot_radius=1"],
+    "scenario": ["task=scenario", "planner=astar", "scenario.drawn=3"],
+    "drive": ["task=drive", "navigator=replan_astar", "drive.step_limit=30"],
+}
+
+
+@pytest.fixture(scope="module", params=RUNS)
+def log(request, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("runs")
+    words = [*SMALL, *RUNS[request.param], "recorder=mcap", f"output={folder}"]
+    with initialize_config_dir(conf_folder(), version_base="1.3"):
+        config = compose("config", overrides=words, return_hydra_config=True)
+    choices = dict(config.hydra.runtime.choices)
+    OmegaConf.set_struct(config, False)
+    del config["hydra"]
+    return execute(make_run(config, choices), "", progress=False).folder / "run.mcap"
+
+
+@pytest.fixture(autouse=True)
+def made_once(monkeypatch):
+    """Make a run of the same settings once: that takes most of the time, and depends on no more."""
+    make, made = again.made_again, {}
+
+    def once(logged, kernels):
+        key = description.metadata(logged)["sha256"]
+        if key not in made:
+            made[key] = make(logged, kernels)
+        return made[key]
+
+    monkeypatch.setattr(again, "made_again", once)
+
+
+def verified(path, capsys):
+    code = log_cli.main(["verify", str(path)])
+    printed = capsys.readouterr()
+    assert (printed.out + printed.err).count("\n") == 1
+    return code, (printed.out + printed.err).removeprefix(f"gapath-log: {path}: ")
+
+
+def missed(what, names, code, line):
+    """Say what is wrong with what was said of an altered log; nothing if it was named."""
+    told = any(name.removeprefix("version/") in line for name in names)
+    weak = code == 0 and "made with" not in line and "is its author's" not in line
+    return f"{what}: {code} {line}" if weak or not told else ""
+
+
+def test_put_together_as_it_was_it_is_reproduced(log, tmp_path, capsys):
+    path = tmp_path / "run.mcap"
+    put_together(taken_apart(log), path)
+    assert path.read_bytes() == log.read_bytes()
+    code, line = verified(path, capsys)
+    assert code == 0 and ": reproduced, byte for byte" in line
+
+
+def test_whatever_is_altered_is_named(log, tmp_path, capsys):
+    every = list(alterations(taken_apart(log)))
+    chosen = np.random.default_rng(17).permutation(len(every))[: rounds(60, len(every))]
+    path, wrong = tmp_path / "run.mcap", []
+    for number in chosen:
+        what, names, parts = every[number]
+        put_together(parts, path)
+        wrong.append(missed(what, names, *verified(path, capsys)))
+    wrong = list(filter(None, wrong))
+    with capsys.disabled():
+        print(f"\n{len(chosen)} of {len(every)} alterations, {len(wrong)} not named")
+    assert not wrong, "\n".join(wrong)
+
+
+def record(opcode, data=b""):
+    return struct.pack("<BQ", opcode, len(data)) + data
+
+
+APPENDED = {
+    "a zero": b"\0",
+    "zeros": bytes(1000),
+    "a record of zeros": record(0, bytes(9)),
+    "magic": b"\x89MCAP0\r\n",
+    "text": b"made by nobody\n",
+    "an unknown record": record(0x80, b"by nobody"),
+    "a data end": record(0x0F, bytes(4)),
+    "itself": None,
+}
+
+WRITTEN = {
+    "one chunk": {"ends": set()},
+    "a chunk a message": {"ends": set(range(10**4))},
+    "not compressed": {"compression": CompressionType.NONE},
+    "no chunks": {"use_chunking": False},
+    "no index of messages": {"index_types": IndexType.ALL & ~IndexType.MESSAGE},
+    "no index of chunks": {"index_types": IndexType.ALL & ~IndexType.CHUNK},
+    "no index of attachments": {"index_types": IndexType.ALL & ~IndexType.ATTACHMENT},
+    "no index of metadata": {"index_types": IndexType.ALL & ~IndexType.METADATA},
+    "no channels at the end": {"repeat_channels": False},
+    "no schemas at the end": {"repeat_schemas": False},
+    "no statistics": {"use_statistics": False},
+    "no offsets": {"use_summary_offsets": False},
+    "no CRC": {"enable_crcs": False},
+    "no CRC of the data": {"enable_data_crcs": False},
+}
+
+
+def test_another_layout_or_more_bytes_are_noticed(log, tmp_path, capsys):
+    path, wrong, parts, whole = tmp_path / "run.mcap", [], taken_apart(log), log.read_bytes()
+    for what, data in APPENDED.items():
+        for place in (len(whole), len(whole) - 8, 8, len(whole) // 2):
+            path.write_bytes(whole[:place] + (whole if data is None else data) + whole[place:])
+            wrong.append(missed(f"{what} at {place}", ("",), *verified(path, capsys)))
+    for what, given in WRITTEN.items():
+        options = {name: value for name, value in given.items() if name != "ends"}
+        put_together(Parts(parts.entries, given.get("ends", parts.ends)), path, **options)
+        wrong.append(missed(what, ("",), *verified(path, capsys)))
+    assert not list(filter(None, wrong))
