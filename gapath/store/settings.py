@@ -25,6 +25,9 @@ _UNEVEN = re.compile(r"\[|\.$", re.MULTILINE)
 MAX_YAML_BYTES = 1 << 16
 """Bytes of the largest YAML that is read; so many characters, too."""
 
+MAX_TEXT = 1 << 20
+"""Characters of the longest settings that a log may have: recorders' lists of trials are long."""
+
 MOST_NODES, DEEPEST = 10_000, 32
 """Values of a YAML, each as often as it stands for, and mappings and lists within one another."""
 
@@ -182,18 +185,24 @@ def of_text(text: str) -> dict[str, Value]:
     Raises
     ------
     InputError
-        If a line is something else.
+        If it is not just as `text_of` writes it, is longer than `MAX_TEXT`, asks for what stands
+        elsewhere (``${...}``), or has a name of more parts than `DEEPEST`.
     """
     settings: dict[str, Value] = {}
-    for line in text.splitlines():
+    size = len(text)
+    require(size <= MAX_TEXT, "settings", f"{size} characters", f"at most {MAX_TEXT}")
+    for line in text.split("\n")[:-1]:
         name, colon, shown = line.partition(": ")
         try:
             value = json.loads(shown)
-        except ValueError as error:
+        except (ValueError, RecursionError) as error:
             raise InputError("settings", line, "name: value") from error
         plain = value is None or isinstance(value, str | int | float | bool)
         require(bool(colon) and plain and name not in settings, "settings", line, "name: value")
+        require("${" not in line, "settings", line, "plain values, nothing to be filled in")
+        require(len(_STEP.findall(name)) <= DEEPEST, "settings", line, "a shorter name")
         settings[name] = value
+    require(text == text_of(settings), "settings", "other text", "lines as gapath writes them")
     return settings
 
 

@@ -171,7 +171,7 @@ BAD = {
     ),
     "entries missing": (
         lambda path, log: foreign(path, metadata={"gapath_log_version": "5"}),
-        "metadata",
+        "sha256: got None",
     ),
 }
 
