@@ -271,7 +271,7 @@ def _record(path: Path, trials: list[int], folder: Path, limits: mcap.Limits) ->
     recorder = Recorder(trials=trials)
     recorder.open(str(folder))
     try:
-        for event in mcap.read_events(path, limits):
+        for event in mcap.read_sound(path, limits):
             recorder.record(event)
     except BaseException:
         recorder.abort()

@@ -9,13 +9,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from altering import Parts, alterations, put_together, taken_apart
+from logs_of_runs import RUNS, log_of, told
 from mcap.records import Metadata
 from mcap.writer import CompressionType, IndexType
 from scale import rounds
-from small_runs import RUNS, log_of, told
 
 from gapath.recorders.mcap import description
 from gapath.running import again
+
 
 @pytest.fixture(scope="module", params=RUNS)
 def log(request, tmp_path_factory):

@@ -6,6 +6,7 @@ from gapath.recorders.mcap.file.walk import LARGE, USUAL, Limits
 from gapath.recorders.mcap.log import FILE, Recorder
 from gapath.recorders.mcap.reader import look, read_events, read_prefix
 from gapath.recorders.mcap.salvage import Saved, salvage
+from gapath.recorders.mcap.sound import read_sound
 
 __all__ = [
     "FILE",
@@ -20,5 +21,6 @@ __all__ = [
     "look",
     "read_events",
     "read_prefix",
+    "read_sound",
     "salvage",
 ]

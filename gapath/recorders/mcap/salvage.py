@@ -25,7 +25,7 @@ from gapath.store.durable import publish
 _HEAD = struct.Struct("<BQ")
 _MARK = struct.pack("<I", 4) + b"zstd"
 _BEFORE = _HEAD.size + 28  # bytes of a chunk's record before that
-_BLOCK = 1 << 20
+_BLOCK = 1 << 16
 _PATIENCE = 4  # times the file's size that may be read in vain
 _FOOTER = struct.Struct("<BQQQI")
 
@@ -76,6 +76,7 @@ def salvage(path: str | Path, output: str | Path, limits: Limits = LARGE) -> Sav
         with refusing(path, f"{BEGUN}: there is nothing whole in it"):
             head, run, place = _begin(file, limits)
             lost, count = _lost(file, place, limits, run.trials)
+            require(count > 0, "messages", "nothing whole in it", "at least a chunk that is")
         with tempfile.TemporaryDirectory(dir=output.parent) as folder:
             whole = Path(folder) / FILE
             with whole.open("wb") as new:
@@ -118,9 +119,11 @@ def _begin(file: IO[bytes], limits: Limits) -> tuple[Head, RunStarted, int]:
 
 def _messages(file: IO[bytes], place: int, limits: Limits) -> Iterator[tuple[str, Message]]:
     """Give all messages of whole chunks, and their topics, in the order of their numbers."""
-    topics, count = _told_channels(file, limits), 0
+    topics, count, most = _told_channels(file, limits), 0, limits.messages
     for data in _chunks(file, place, limits):
         for _, entry in inside(data):
+            most -= 1
+            require(most >= 0, "messages", f"over {limits.messages}", "fewer, or --large")
             if isinstance(entry, Channel) and entry.topic in TOPICS:
                 topics[entry.id] = entry.topic
             elif not isinstance(entry, Message) or entry.sequence < count:
@@ -152,31 +155,37 @@ def _chunks(file: IO[bytes], place: int, limits: Limits) -> Iterator[bytes]:
     is searched for the next one.
     """
     size = os.fstat(file.fileno()).st_size
-    patience, inflating, least = _PATIENCE * size + _BLOCK, limits.log, place
-    while place < size and patience > 0:
+    inflating, in_vain, tries, least = limits.log, _PATIENCE * size, limits.messages // 10, place
+    while place < size and in_vain > 0 and tries > 0:
         file.seek(place)
-        block = file.read(_BLOCK)
-        patience -= len(block) if len(block) == _BLOCK else 0
+        block, data = file.read(_BLOCK), None
         found = block.find(_MARK)
-        if found < 0:
+        while found >= 0 and data is None and in_vain > 0 and tries > 0:
+            begin = place + found - _BEFORE
+            found = block.find(_MARK, found + 1)
+            record = (
+                _chunk_at(file, begin, min(limits.chunk, size - begin)) if begin >= least else b""
+            )
+            with contextlib.suppress(Exception):  # whatever the libraries raise at what is none
+                data = inflated(chunk_of(record, limits))
+                least = begin + len(record)
+            in_vain -= len(record) if data is None else 0
+            tries -= 1
+        if data is None:
             place += max(len(block) - len(_MARK) + 1, 1)
             continue
-        begin, place = place + found - _BEFORE, place + found + 1
-        file.seek(max(begin, 0))
-        head = file.read(_HEAD.size)
-        if begin < least or head[:1] != bytes([Opcode.CHUNK]):
-            continue
-        (length,) = _HEAD.unpack(head)[1:]
-        if length > min(limits.chunk, size - begin):
-            continue
-        patience -= length
-        with contextlib.suppress(Exception):  # whatever the libraries raise at what is no chunk
-            data = inflated(chunk_of(head + file.read(length), limits))
-            inflating -= len(data)
-            require(inflating >= 0, "inflated size", f"over {limits.log}", "less")
-            place = least = begin + _HEAD.size + length
-            patience += length
-            yield data
+        place, inflating = least, inflating - len(data)
+        require(inflating >= 0, "inflated size", f"over {limits.log}", "less, or --large")
+        yield data
+
+
+def _chunk_at(file: IO[bytes], begin: int, most: int) -> bytes:
+    """Give the record that begins somewhere, if it can be a chunk's."""
+    file.seek(begin)
+    head = file.read(_HEAD.size)
+    opcode, length = _HEAD.unpack(head)
+    fits = opcode == Opcode.CHUNK and _HEAD.size + length <= most
+    return head + file.read(length) if fits else b""
 
 
 def _lost(file: IO[bytes], place: int, limits: Limits, trials: int) -> tuple[Lost, int]:
