@@ -17,9 +17,9 @@ RUNS = {
 }
 
 
-def log_of(name, folder):
+def log_of(name, folder, *more):
     """Do a run; give its log."""
-    words = [*SMALL, *RUNS[name], "recorder=mcap", f"output={folder}"]
+    words = [*SMALL, *RUNS[name], "recorder=mcap", f"output={folder}", *more]
     with initialize_config_dir(conf_folder(), version_base="1.3"):
         config = compose("config", overrides=words, return_hydra_config=True)
     choices = dict(config.hydra.runtime.choices)

@@ -127,3 +127,13 @@ def test_another_layout_or_more_bytes_are_noticed(log, tmp_path, capsys):
             put_together(with_other_versions(parts), path, **options)
             wrong.append(missed(f"{what}, other versions", ("",), *verified(path, capsys)))
     assert not list(filter(None, wrong))
+
+
+def test_a_log_has_the_same_bytes_however_it_is_recorded(tmp_path):
+    ways = [[], ["recorder=[mcap,rerun]"], ["recorder=[rerun,mcap]", "recorder.rerun.trials=[1]"],
+            ["threads=2"], ["kernels=scalar"]]  # fmt: skip
+    logs = {
+        log_of("plan", tmp_path / str(number), *words).read_bytes()
+        for number, words in enumerate(ways)
+    }
+    assert len(logs) == 1

@@ -11,11 +11,20 @@ from typing import IO, NamedTuple
 from mcap.opcode import Opcode
 from mcap.records import Channel, Message
 
-from gapath.errors import require
+from gapath.errors import InputError, require
 from gapath.events import Finished, RunFinished, RunStarted, TrialStarted
 from gapath.recorders.mcap.description import NOTHING, Lost
 from gapath.recorders.mcap.file.summary import MAGIC
-from gapath.recorders.mcap.file.walk import LARGE, Limits, Walk, chunk_of, inflated, inside, opened
+from gapath.recorders.mcap.file.walk import (
+    LARGE,
+    Ended,
+    Limits,
+    Walk,
+    chunk_of,
+    inflated,
+    inside,
+    opened,
+)
 from gapath.recorders.mcap.format import NS_PER_STEP, TOPICS
 from gapath.recorders.mcap.log import FILE, LogWriter
 from gapath.recorders.mcap.messages import event
@@ -73,8 +82,11 @@ def salvage(path: str | Path, output: str | Path, limits: Limits = LARGE) -> Sav
     require(output.parent.is_dir(), output, "no such folder", "a file in an existing folder")
     require(not output.exists(), output, "a file that exists", "a new name")
     with opened_regular(path) as file:
-        with refusing(path, f"{BEGUN}: there is nothing whole in it"):
-            head, run, place = _begin(file, limits)
+        with refusing(path, BEGUN):
+            try:
+                head, run, place = _begin(file, limits)
+            except Ended as error:
+                raise InputError("log", "nothing whole in it", BEGUN) from error
             lost, count = _lost(file, place, limits, run.trials)
             require(count > 0, "messages", "nothing whole in it", "at least a chunk that is")
         with tempfile.TemporaryDirectory(dir=output.parent) as folder:

@@ -19,7 +19,7 @@ from mcap.data_stream import ReadDataStream
 from mcap.opcode import Opcode
 from mcap.records import Attachment, Channel, Chunk, Header, McapRecord, Message, Metadata, Schema
 
-from gapath.errors import require
+from gapath.errors import InputError, require
 from gapath.recorders.mcap.file.summary import MAGIC, Summary, encoded
 from gapath.recorders.mcap.format import LIBRARY, MAX_CHUNK, MAX_LOG, PROFILE, TOPICS
 
@@ -105,6 +105,10 @@ def entries(file: IO[bytes], limits: Limits = USUAL) -> Iterator[Entry]:
     walk.end()
 
 
+class Ended(InputError):
+    """A file ends where there must be more."""
+
+
 class Walk:
     """Where in a file one is, and what was there so far."""
 
@@ -118,7 +122,8 @@ class Walk:
 
     def _take(self, size: int) -> bytes:
         left = self._size - self.place
-        require(size <= left, "record", f"{left} bytes up to the end", f"{size} bytes")
+        if size > left:
+            raise Ended("record", f"{left} bytes up to the end", f"{size} bytes")
         data = self._file.read(size)
         require(len(data) == size, "record", f"{len(data)} bytes", f"{size} bytes")
         self.place += size
@@ -137,8 +142,10 @@ class Walk:
 
     def begin(self) -> None:
         """Read what a file begins with."""
-        magic = self._take(len(MAGIC)) if self._size else b""
-        require(magic == MAGIC, "first bytes", magic.hex(" "), f"those of MCAP, {MAGIC.hex(' ')}")
+        magic = self._take(min(len(MAGIC), self._size))
+        if magic != MAGIC:
+            kind = Ended if MAGIC.startswith(magic) else InputError
+            raise kind("first bytes", magic.hex(" "), f"those of MCAP, {MAGIC.hex(' ')}")
         opcode, data = self._record()
         require(opcode == Opcode.HEADER, "first record", f"of kind {opcode}", "a header")
         header = read(Header, data)
