@@ -191,7 +191,7 @@ def of_text(text: str) -> dict[str, Value]:
     settings: dict[str, Value] = {}
     size = len(text)
     require(size <= MAX_TEXT, "settings", f"{size} characters", f"at most {MAX_TEXT}")
-    for line in text.split("\n")[:-1]:
+    for line in text.removesuffix("\n").split("\n") if text else ():
         name, colon, shown = line.partition(": ")
         try:
             value = json.loads(shown)

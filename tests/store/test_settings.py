@@ -71,10 +71,20 @@ def test_the_text_is_yaml():
 @pytest.mark.parametrize(
     "text",
     ["planner", "a: [1, 2]", "a: {}", "a: !!python/name:os.system", "a: ${oc.env:HOME}", "a: &b 1",
-     "a: 1\na: 2"],
+     "a: 1\na: 2", "a: " + 9000 * "["],
 )  # fmt: skip
 def test_text_that_is_no_plain_setting_is_refused(text):
     with pytest.raises(InputError, match="expected name: value"):
+        of_text(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["a: 1", "a:  1\n", "a: 1 \n", "a: 1e2\n", 'a: "${oc.env:HOME}"\n', "${a}: 1\n", "\n",
+     f"a: {'9' * 5000}\n", f"{'.'.join('a' * 40)}: 1\n", f'a: "{"x" * 2**20}"\n', "# a\n"],
+)  # fmt: skip
+def test_text_that_is_written_otherwise_is_refused(text):
+    with pytest.raises(InputError, match="^settings: got "):
         of_text(text)
 
 
