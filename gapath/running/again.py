@@ -24,8 +24,6 @@ from gapath.task import Batch, Posing, Task, find_task
 _HOW = {"recorder": {}, "output": "-", "force": False, "threads": 1, "kernels": AUTO}
 """What a log does not say, since it changes nothing in it."""
 
-_RECORDER = "recorder."  # what logs of version 5 and before said of that
-
 _MANY = ("population", "max_epochs", "iterations", "individuals", "tries", "effort", "step_limit")
 """Settings whose product bounds what a component tries in one trial."""
 
@@ -74,9 +72,9 @@ def made_again(logged: RunStarted, kernels: str = AUTO) -> Again:
     InputError
         If the log's settings are not those of a run of this version.
     """
-    kept = {k: v for k, v in logged.settings.items() if not k.startswith(_RECORDER)}
     try:
-        given = nested(kept)
+        given = nested(logged.settings)
+        recorder = given.pop("recorder", None)  # what logs of version 5 and before said of that
         find_task(given.get("task"))
         root, chosen = split(given | _HOW)
         settings = settings_of(root, chosen)
@@ -89,9 +87,9 @@ def made_again(logged: RunStarted, kernels: str = AUTO) -> Again:
         raise InputError(where, error.value, error.expected) from error
     method, remark = _method(task, settings, logged.method)
     optimum = task.optimum(problem)
-    del settings["recorder"]
-    again = flatten(settings)
-    older = {k: v for k, v in logged.settings.items() if k.startswith(_RECORDER)}
+    settings["recorder"] = recorder
+    if recorder is None:
+        del settings["recorder"]
     started = RunStarted(
         root.name,
         method,
@@ -99,17 +97,12 @@ def made_again(logged: RunStarted, kernels: str = AUTO) -> Again:
         problem,
         root.seed,
         root.trials * (1 if problem.queries is None else len(problem.queries)),
-        _as_ordered(again | older, logged.settings) if older else again,
+        flatten(settings),
         logged.versions,
         optimum.path,
         optimum.cost,
     )
     return Again(started, task, optimum, [*remarks, *remark])
-
-
-def _as_ordered(settings: dict[str, Any], like: Mapping[str, Any]) -> dict[str, Any]:
-    """Put settings into the order of others, as far as these have them."""
-    return {name: settings[name] for name in like if name in settings} | settings
 
 
 def _problem(

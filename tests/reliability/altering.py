@@ -322,7 +322,7 @@ def _consistent(parts):
         swap = {one: other, other: one}
         variants[f"{one} swapped"] = [swap.get(line, line) for line in lines]
     variants["a setting more"] = [*lines, "note: 1\n"]
-    variants["a comment"] = [*lines, "# by nobody\n"]
+    variants["of a recorder"] = [*lines, 'recorder.mcap.made: "by nobody"\n']
     variants["how it is run"] = [*lines, 'output: "mine"\n']
     for what, new in variants.items():
         named = ("settings", "metadata")

@@ -84,7 +84,7 @@ def test_text_that_is_no_plain_setting_is_refused(text):
      f"a: {'9' * 5000}\n", f"{'.'.join('a' * 40)}: 1\n", f'a: "{"x" * 2**20}"\n', "# a\n"],
 )  # fmt: skip
 def test_text_that_is_written_otherwise_is_refused(text):
-    with pytest.raises(InputError, match="^settings: got "):
+    with pytest.raises(InputError, match=r"^settings: got "):
         of_text(text)
 
 

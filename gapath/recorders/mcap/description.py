@@ -190,7 +190,10 @@ def run_started(text: Mapping[str, str], files: Mapping[str, bytes]) -> RunStart
     written, told = dict(text), partial(_told, text)
     digest = written.pop("sha256", None)
     require(_digest(written, files) == digest, "sha256", digest, "the digest of what is there")
-    arrays = _Arrays(files)
+    arrays, settings = _Arrays(files), told("settings", of_text)
+    of_recorders = [name for name in settings if name.startswith("recorder.")]
+    good = version != LOG_VERSION or not of_recorders
+    require(good, "settings", of_recorders[:1], f"none of recorders in version {LOG_VERSION}")
     return RunStarted(
         experiment=told("experiment"),
         method=told("method"),
@@ -205,7 +208,7 @@ def run_started(text: Mapping[str, str], files: Mapping[str, bytes]) -> RunStart
         ),
         seed=told("seed", int),
         trials=told("trials", int),
-        settings=told("settings", of_text),
+        settings=settings,
         versions={
             name.removeprefix(_VERSION_OF): version
             for name, version in text.items()

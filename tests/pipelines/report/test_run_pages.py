@@ -255,7 +255,7 @@ def test_a_log_that_cannot_be_read_is_said_to_be(tmp_path, make_run):
     log.write_bytes(log.read_bytes()[:-200])
     sign(run)
     text = page_of(tmp_path, run.name)
-    assert "polyline" not in text and "a whole log of gapath" in text
+    assert "polyline" not in text and "bytes up to the end" in text
 
 
 def test_stills_are_of_the_newest_logs_that_fit(monkeypatch):
