@@ -99,7 +99,7 @@ def test_its_population_is_logged_recorded_reproduced_and_reported(site, tmp_pat
     assert len(list((tmp_path / "again").iterdir())) == 2
     cut = tmp_path / "run.mcap.part"
     cut.write_bytes((folder / "run.mcap").read_bytes()[:-1500])
-    assert "events saved" in succeed(site, tmp_path, "gapath-log", "salvage", cut)
+    assert "messages saved" in succeed(site, tmp_path, "gapath-log", "salvage", cut)
     succeed(site, tmp_path, "gapath-report", "outputs")
     page = tmp_path / "outputs" / "report" / "runs" / f"{folder.name}.html"
     assert "first path: first bend" in page.read_text("utf-8")

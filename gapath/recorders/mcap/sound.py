@@ -113,13 +113,13 @@ class _Sound:
                 return first and limits and 0 <= event.unknown_weight <= 1
             case Called():
                 named = len(event.part) == 1 and event.index < _LAYERS
-                return self._drives and named and self._on_map(event.answer.path)
+                return named and self._on_map(event.answer.path)
             case PathsChanged():
-                return self._drives and self._on_map(event.path) and self._on_map(event.past)
+                return self._on_map(event.path) and self._on_map(event.past)
             case Stepped():
-                return self._drives and self._seen(event)
+                return self._seen(event)
             case DriveFinished():
-                return self._drives and event.stands <= event.steps <= _STEPS
+                return event.stands <= event.steps <= _STEPS
         return True
 
     def _seen(self, event: Stepped) -> bool:
