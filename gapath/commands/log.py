@@ -6,7 +6,7 @@ import subprocess
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -178,15 +178,23 @@ def _salvage(arguments: argparse.Namespace) -> int:
     name = path.stem if path.suffix == ".part" else f"{path.stem}.salvaged.mcap"
     output = arguments.output or place / name
     messages, lost = mcap.salvage(path, output, _limits(arguments))
-    print(printable(f"{output}: {messages} messages saved and read back{_lacking(lost.trials)}"))
+    print(printable(f"{output}: {messages} messages saved and read back{_lacking(lost)}"))
     return 0
 
 
-def _lacking(trials: Collection[int]) -> str:
-    """Say which trials are not whole in a log that was saved."""
-    few = sorted(trials)[:_FEW]
-    more = f" and {len(trials) - _FEW} more" if len(trials) > _FEW else ""
-    return f"; not whole, so left out: trials {', '.join(map(str, few))}{more}" if few else ""
+def _lacking(lost: mcap.Lost) -> str:
+    """Say which messages are missing in a log that was saved, and which trials are not whole."""
+    if not lost.messages:
+        return ""
+    parts = {"messages": [f"{first}-{last}" for first, last in lost.messages]}
+    parts["not whole, so left out: trials"] = [str(trial) for trial in sorted(lost.trials)]
+    told = [
+        f"{name} {', '.join(all_of[:_FEW])}"
+        + (f" and {len(all_of) - _FEW} more" if len(all_of) > _FEW else "")
+        for name, all_of in parts.items()
+        if all_of
+    ]
+    return f"; lost: {'; '.join(told)}"
 
 
 _FEW = 9
@@ -235,11 +243,11 @@ def _compared(path: Path, arguments: argparse.Namespace) -> tuple[int, str]:
         return 1, f"differs from byte {found.byte} on, though all of its {count} are equal"
     level = "byte for byte" if found.byte is None else "every message"
     told = "; ".join([f"{level}, {count}", *others, *remarks])
-    if found.ended and not found.lost.trials:
+    if found.ended and not found.lost.messages:
         return 0, f"reproduced, {told}"
     until = "in its first trial" if found.trial is None else f"after trial {found.trial}"
     state = "saved in part" if found.ended else f"interrupted {until}"
-    return 3, f"{state}, equal so far, {told}{_lacking(found.lost.trials)}"
+    return 3, f"{state}, equal so far, {told}{_lacking(found.lost)}"
 
 
 def _other_versions(found: mcap.Comparison) -> list[str]:

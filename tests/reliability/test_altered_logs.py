@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from altering import Parts, alterations, put_together, taken_apart
 from logs_of_runs import RUNS, log_of, told
-from mcap.records import Metadata
+from mcap.records import Message, Metadata
 from mcap.writer import CompressionType, IndexType
 from scale import rounds
 
@@ -137,3 +137,17 @@ def test_a_log_has_the_same_bytes_however_it_is_recorded(tmp_path):
         for number, words in enumerate(ways)
     }
     assert len(logs) == 1
+
+
+def test_a_message_that_is_said_to_be_lost_is_told(log, tmp_path, capsys):
+    parts, path = taken_apart(log), tmp_path / "run.mcap"
+    numbers = [e.sequence for e in parts.entries if isinstance(e, Message)]
+    trials = {tuple(map(str, which)) for which in ((), (0,), (0, 1))}
+    for number in numbers[:-1] if len(numbers) < 20 else numbers[:-1:9]:
+        rest = [e for e in parts.entries if getattr(e, "sequence", None) != number]
+        for which in trials:
+            text = {"messages": f"{number}-{number}", "trials": " ".join(which)}
+            lost = [rest[0], rest[1], Metadata(description.LOST, text), *rest[2:]]
+            put_together(Parts(lost, parts.ends), path)
+            code, line = verified(path, capsys)
+            assert code and (code < 3 or f"lost: messages {number}-{number}" in line), line

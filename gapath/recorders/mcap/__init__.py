@@ -1,7 +1,7 @@
 """The log: every event of a run in one MCAP file, and the events back from it."""
 
 from gapath.recorders.mcap.compare import Comparison, compare
-from gapath.recorders.mcap.description import LOG_VERSION
+from gapath.recorders.mcap.description import LOG_VERSION, Lost
 from gapath.recorders.mcap.file.walk import LARGE, USUAL, Limits
 from gapath.recorders.mcap.log import FILE, Recorder
 from gapath.recorders.mcap.reader import look, read_events, read_prefix
@@ -15,6 +15,7 @@ __all__ = [
     "USUAL",
     "Comparison",
     "Limits",
+    "Lost",
     "Recorder",
     "Saved",
     "compare",
