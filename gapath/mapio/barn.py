@@ -11,6 +11,7 @@ the goal's row. Start and goal lie on corners of cells: theirs is the field to t
 import io
 import json
 import math
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
@@ -197,7 +198,8 @@ def _floats(where: str, text: str | None) -> list[float]:
 def _read_path(path: str) -> dict[str, list[float]]:
     """Read the ends of a ``path_N.npy``: (n, 2) cells, of which (0, 0) is at `PATH_ORIGIN`."""
     try:
-        cells = np.load(io.BytesIO(read_bytes(path, MAX_WORLD_BYTES)), allow_pickle=False)
+        with warnings.catch_warnings(action="ignore"):  # of Python's, and of old headers
+            cells = np.load(io.BytesIO(read_bytes(path, MAX_WORLD_BYTES)), allow_pickle=False)
     except InputError:
         raise
     except Exception as error:  # NumPy lets a tokenizer's, and memory's, through

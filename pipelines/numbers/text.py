@@ -98,7 +98,7 @@ _MARKUP = re.compile(r"<(?=[a-zA-Z/!?])|`|\||\]\(")
 def in_latex(text: object) -> str:
     """Write text for LaTeX."""
     shown = "".join(_LATEX.get(character, character) for character in printable(text))
-    return f"{{[}}{shown[1:]}" if shown.startswith("[") else shown  # behind a row's end an option
+    return f"{{[}}{shown[1:]}" if shown[:1] == "[" else shown  # behind a row's end an option
 
 
 _LATEX = {

@@ -133,4 +133,4 @@ def check_amounts(table: Any, success: str) -> None:
         if name in ("cost", "plan_time_s", "compute_time_s"):
             wrong |= succeeded & ~np.isfinite(values)
         if wrong.any():
-            raise InputError(f"{TRIALS}, {name}", values[wrong][0], "a finite number from 0 on")
+            raise InputError(f"{TRIALS}, {name}", values[wrong][0], "a finite number, not negative")

@@ -149,6 +149,7 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
+@pytest.mark.filterwarnings("error")  # they would be more than one line
 @pytest.mark.parametrize(("kind", "ending", "setting"), TARGETS)
 def test_a_reader_gives_a_map_or_one_line(folder, kind, ending, setting):
     dice = random.Random(f"{kind} {ending}")

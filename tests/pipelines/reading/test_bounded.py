@@ -52,7 +52,7 @@ def test_numbers_that_no_trial_has_go_into_no_mean(run, name, value):
     found = altered(run, name, value)
     assert found.trials["plan"].empty
     ((_, reason),) = found.skipped
-    assert reason.startswith(f"trials.parquet, {name}: got {value}, expected a finite number")
+    assert reason.startswith(f"trials.parquet, {name}: got {value}, expected a finite number,")
 
 
 def test_a_failure_may_have_an_endless_cost(run):
