@@ -18,14 +18,12 @@ from gapath.planning.acceleration import AUTO, with_kernels
 from gapath.problem import CornerCutting, Plan, Problem
 from gapath.running.config import Root, first_of, read_problem, settings_of, split
 from gapath.running.naming import Method, changes_of, map_name, usual_values
+from gapath.running.work import work as of_a_trial
 from gapath.store.settings import flatten, nested
 from gapath.task import Batch, Posing, Task, find_task
 
 _HOW = {"recorder": {}, "output": "-", "force": False, "threads": 1, "kernels": AUTO}
 """What a log does not say, since it changes nothing in it."""
-
-_MANY = ("population", "max_epochs", "iterations", "individuals", "tries", "effort", "step_limit")
-"""Settings whose product bounds what a component tries in one trial."""
 
 MOST_WORK = 10**9
 """Individuals tried, or fields searched, that take some minutes; more is asked for."""
@@ -215,18 +213,4 @@ def work(again: Again) -> int:
         Some millions of them take a second.
     """
     run = again.started
-    nest = nested(run.settings)
-    tried = sum(_tried(nest[group]) for group in again.task.groups)
-    return run.trials * (tried + run.problem.map.weights.size)
-
-
-def _tried(settings: Any) -> int:
-    if isinstance(settings, list):
-        return sum(map(_tried, settings))
-    if not isinstance(settings, dict):
-        return 0
-    product = 1
-    for name in _MANY:
-        value = settings.get(name)
-        product *= max(1, int(value)) if isinstance(value, int | float) else 1
-    return product + sum(map(_tried, settings.values()))
+    return run.trials * of_a_trial(run.settings, again.task.groups, run.problem.map.weights.size)

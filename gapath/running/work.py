@@ -8,7 +8,7 @@ from gapath.store.settings import Flat, nested
 MUCH = 10**10
 """Individuals tried and fields searched that take an hour or more, at some millions a second."""
 
-_COUNTS = ("population", "max_epochs", "iterations", "tries", "effort")
+_COUNTS = ("population", "max_epochs", "iterations", "tries", "effort", "step_limit")
 """Settings whose product bounds what a planner tries each time it plans."""
 
 
