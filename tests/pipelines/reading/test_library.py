@@ -1,9 +1,9 @@
 """Runs for who works in Python."""
 
-import json
 import shutil
 import sys
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -15,7 +15,9 @@ from gapath.commands import run as cli
 from gapath.events import RunFinished, RunStarted
 from gapath.pipelines.reading.frame import chosen
 from gapath.recorders.mcap import FILE, read_events
-from gapath.store.records import MANIFEST, STATUS, TRIALS, find_runs
+from gapath.store.records import MANIFEST, TRIALS, find_runs
+from gapath.store.runfolder import RunFolder
+from gapath.store.status import RunState, Status
 
 MAP = "type octile\nheight 3\nwidth 5\nmap\n.....\n.@@@.\n.....\n"
 COMMANDS = {
@@ -38,9 +40,9 @@ def outputs(tmp_path_factory):
         for command in COMMANDS.values():
             patch.setattr(sys, "argv", ["gapath", *command.split()])
             cli.main()
-    status = folder_of(top / "outputs", "failed") / STATUS
-    broken = {**json.loads(status.read_text()), "state": "failed", "message": "a wheel came off"}
-    status.write_text(json.dumps(broken))
+    failed = folder_of(top / "outputs", "failed")
+    status = Status.read(failed)
+    replace(status, state=RunState.FAILED, message="a wheel came off").write(RunFolder(failed))
     return top / "outputs"
 
 
