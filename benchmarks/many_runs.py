@@ -1,7 +1,6 @@
 """A folder of very many runs, made from a few real ones in about a minute."""
 
 import hashlib
-import json
 import subprocess
 import tempfile
 from collections.abc import Iterator
@@ -15,7 +14,7 @@ import numpy as np
 from benchmarks.measure import COMMAND, MAPS
 from gapath.store.records import CONFIG, MANIFEST, TRIALS, FileEntry, Manifest
 from gapath.store.rows import written
-from gapath.store.status import STATUS
+from gapath.store.status import STATUS, Status, as_json
 from gapath.task import find_task, results
 
 POPULATIONS = range(20, 140, 12)
@@ -59,8 +58,8 @@ def _write(source: Path, table: Any, seed: int, outputs: Path) -> None:
     """Write a run folder like another, its rows drawn anew, under another seed."""
     known = Manifest.read(source)
     rows = _drawn(table, int(known.key, 16), seed) if seed else table
-    text = (source / CONFIG).read_text("utf-8").replace("\nseed: 0\n", f"\nseed: {seed}\n")
-    files = {CONFIG: text.encode(), TRIALS: written(rows)}
+    config = (source / CONFIG).read_text("utf-8").replace("\nseed: 0\n", f"\nseed: {seed}\n")
+    files = {CONFIG: config.encode(), TRIALS: written(rows)}
     task = find_task(known.task)
     manifest = replace(
         known,
@@ -71,9 +70,10 @@ def _write(source: Path, table: Any, seed: int, outputs: Path) -> None:
         results=results(task, {name: rows[name].to_numpy() for name in rows.column_names}),
         files={name: FileEntry(_hash(data), len(data)) for name, data in files.items()},
     )
+    text = as_json(asdict(manifest))
     files |= {
-        MANIFEST: (json.dumps(asdict(manifest), indent=2) + "\n").encode(),
-        STATUS: (source / STATUS).read_bytes(),
+        MANIFEST: text,
+        STATUS: replace(Status.read(source), manifest=_hash(text)).sealed(),
     }
     folder = outputs / known.experiment / manifest.key
     folder.mkdir(parents=True)

@@ -70,7 +70,11 @@ class Status:
 
     def write(self, folder: RunFolder) -> None:
         """Write it, whole."""
-        write_whole(folder.path / STATUS, _sealed(asdict(self)))
+        write_whole(folder.path / STATUS, self.sealed())
+
+    def sealed(self) -> bytes:
+        """Give what stands in the file: the fields, and a hash of them."""
+        return _sealed(asdict(self))
 
     @classmethod
     def read(cls, folder: Path) -> "Status":

@@ -10,7 +10,7 @@ from gapath.store.records import RunRecord
 
 TASK = "scenario"
 EXPERIMENT = None
-ORDER = 100
+ORDER = 99.5
 
 
 def section(trials: pd.DataFrame, runs: Sequence[RunRecord]) -> list[Section]:

@@ -121,7 +121,7 @@ def test_cells_are_for_people(bench):
         ["a path", f"0.123 (0.1 to{fixed}0.2)"],
     ]
     assert lines("drives")[:2] == [[MAPS[0], "3", "0.25"], ["all", "", ""]]
-    assert lines("exact")[0] == ["<b>", "A*", "5", "1.1"]
+    assert lines("exact")[0] == ["&lt;b>", "A*", "5", "1.1"]
     assert lines("growth")[3][4] == f"{middle} ({low} to{fixed}{high})"
     kept = pd.read_csv(outputs / "report" / "bench_growth.csv")
     assert kept["GA us q3"].max() == 1234568.8  # all digits
