@@ -329,10 +329,8 @@ def test_a_row_of_several_runs_leads_to_their_list(opened, report):
 def test_numbers_of_trials_are_whole_or_without_end_as_they_were(opened, tmp_path, make_run):
     run = make_run(tmp_path, "mine", "kg18_test2", "ga3", n=4, log=False)
     costs, counts = [math.inf, 9.0, 1234567.25, 12.0], [390385, 7, 100001, 2**53 + 1]
-    rows = pd.read_parquet(run / "trials.parquet").assign(
-        cost=costs, evaluations=counts, feasible=[False, True, True, True]
-    )
-    rows.to_parquet(run / "trials.parquet")
+    rows = pd.read_parquet(run / "trials.parquet").assign(cost=costs, evaluations=counts)
+    rows.assign(feasible=rows["cost"] < math.inf).to_parquet(run / "trials.parquet")
     summed(run)
     make_report(tmp_path, tmp_path / "report")
     page = opened(path=tmp_path / "report" / "runs" / f"{run.name}.html")
