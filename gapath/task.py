@@ -34,7 +34,7 @@ Measure = Callable[[Problem, Plan], float]
 
 
 class Batch(NamedTuple):
-    """Trials 0 to trials - 1 of one setting, and the names that their rows carry."""
+    """Trials `first` to trials - 1 of one setting, and the names that their rows carry."""
 
     experiment: str
     method: str
@@ -42,6 +42,7 @@ class Batch(NamedTuple):
     seed: int
     trials: int
     threads: int = 1
+    first: int = 0
 
 
 @dataclass(frozen=True)
@@ -262,7 +263,7 @@ class Task(Protocol):
         """Find what the trials are held against."""
 
     def trials(self, batch: Batch, optimum: Plan) -> Iterator[Trial]:
-        """Do the trials, one after another; no event is made before the clock has stopped."""
+        """Do the trials from `Batch.first` on; no event is made before the clock has stopped."""
 
     def summary(self, rows: list[Any]) -> dict[str, object]:
         """Sum rows up for the terminal: label -> value."""

@@ -329,6 +329,8 @@ def test_tasks_say_what_they_are_and_tell_what_they_say(name):
     optimum = made.optimum(problem)
     trials = list(made.trials(Batch("contract", "any", problem, 3, 2), optimum))
     assert [trial.row.trial for trial in trials] == [0, 1]
+    later = made.trials(Batch("contract", "any", problem, 3, 2, first=1), optimum)
+    assert [trial.row.trial for trial in later] == [1]
     step = 0
     for trial in trials:
         told = list(trial.events(step))

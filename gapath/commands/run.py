@@ -113,7 +113,7 @@ def job(config: DictConfig) -> int:
         run = run_of(config, hydra.runtime, words)
         if not sweep:
             warn(told([(run.trials, work_of(run))]))
-        execution = execute(run, command(words, hydra.runtime.config_sources))
+        execution = execute(run, command(words, hydra.runtime.config_sources), tell=warn)
     except FAULTS as error:
         return refuse(error, words, sweep)
     try:

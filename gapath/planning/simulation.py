@@ -111,9 +111,15 @@ def plan_timed(
 
 
 def plan_trials(
-    problem: Problem, optimum: Plan, planner: Planner, seed: int, trials: int, threads: int = 1
+    problem: Problem,
+    optimum: Plan,
+    planner: Planner,
+    seed: int,
+    trials: int,
+    threads: int = 1,
+    first: int = 0,
 ) -> Iterator[TimedPlan]:
-    """Plan with the random streams (seed, 0) to (seed, trials - 1).
+    """Plan with the random streams (seed, first) to (seed, trials - 1).
 
     Parameters
     ----------
@@ -128,6 +134,8 @@ def plan_trials(
     threads : int
         Threads that plan. With more than one a trial's time may hold a wait for another, and
         where the planner plans batches each trial has its batch's mean time.
+    first : int
+        The trial to begin with.
 
     Yields
     ------
@@ -142,7 +150,7 @@ def plan_trials(
         If the planner returns a path that is none.
     """
     if optimum.status is PlanStatus.INFEASIBLE:
-        for number in range(trials):
+        for number in range(first, trials):
             yield TimedPlan(number, Plan(PlanStatus.INFEASIBLE), math.nan)
         return
     planner.plan(problem, stream(seed, 0))  # compiles the kernels before the clock runs
@@ -159,14 +167,14 @@ def plan_trials(
         mean = (time.perf_counter() - begin) / len(batch)
         return [TimedPlan(number, plan, mean) for number, plan in zip(batch, plans, strict=True)]
 
-    pieces = batches(trials, threads, many.most_at_once if many else 1)
+    pieces = batches(trials, threads, many.most_at_once if many else 1, first)
     for answers in in_order(work, pieces, threads):
         for answer in answers:
             _check(problem, planner, answer.plan, seed, answer.number)
             yield answer
 
 
-def batches(trials: int, threads: int, most: int) -> Iterator[range]:
+def batches(trials: int, threads: int, most: int, first: int = 0) -> Iterator[range]:
     """Divide trials into batches, the last ones small, so that all threads end at about one time.
 
     Parameters
@@ -177,13 +185,15 @@ def batches(trials: int, threads: int, most: int) -> Iterator[range]:
         Threads that take batches, one after the other.
     most : int
         Trials of the largest batch.
+    first : int
+        The trial to begin with.
 
     Yields
     ------
     range
         Numbers of trials, in order.
     """
-    begin = 0
+    begin = first
     while begin < trials:
         size = min(max((trials - begin) // (4 * threads), 1), most)
         yield range(begin, begin + size)

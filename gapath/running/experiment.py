@@ -1,10 +1,12 @@
 """Seeds, trials and run folders: from a checked run to files on disk."""
 
 import traceback
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from itertools import chain
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import yaml
 
@@ -13,8 +15,9 @@ from gapath.errors import InputError, printable
 from gapath.events import Event, RunFinished, RunStarted
 from gapath.problem import Plan
 from gapath.running.config import Run
+from gapath.running.progress import Done, Earlier, Journal, earlier
 from gapath.store.durable import named, write_whole
-from gapath.store.inputs import watched
+from gapath.store.inputs import Inputs, Reads, watched
 from gapath.store.keys import run_key, setting_hash, versions
 from gapath.store.records import (
     CONFIG,
@@ -28,7 +31,7 @@ from gapath.store.runfolder import Busy, RunFolder
 from gapath.store.settings import nested, tabular
 from gapath.store.status import STATUS, RunState, Status, now
 from gapath.store.whole import files_of, finish, is_finished, is_whole, settle
-from gapath.task import Batch, columns, results
+from gapath.task import Batch, Trial, columns, results
 
 
 @dataclass(frozen=True)
@@ -69,7 +72,9 @@ def run_started(run: Run, optimum: Plan) -> RunStarted:
     )
 
 
-def execute(run: Run, command: str, progress: bool = True) -> Execution:
+def execute(
+    run: Run, command: str, progress: bool = True, tell: Callable[[str], None] = lambda line: None
+) -> Execution:
     """Do a run and write its folder.
 
     Parameters
@@ -80,6 +85,8 @@ def execute(run: Run, command: str, progress: bool = True) -> Execution:
         The command that does the same, for the manifest.
     progress : bool
         Show a bar while it runs, if the error stream is a terminal.
+    tell : callable
+        Takes a line that says after which trial a run that was cut short goes on.
 
     Returns
     -------
@@ -102,7 +109,7 @@ def execute(run: Run, command: str, progress: bool = True) -> Execution:
             whole = is_whole(folder, run.settings)
             if whole and not run.force:
                 return skipped
-            return _execute_held(run, folder, command, progress, whole)
+            return _execute_held(run, folder, command, _Watched(progress, tell), whole)
     except Busy:
         return Execution(folder.path, RunState.BUSY, [], [])
 
@@ -113,15 +120,24 @@ def run_folder(run: Run) -> RunFolder:
     return RunFolder(Path(run.output) / run.experiment / key)
 
 
+class _Watched(NamedTuple):
+    """How people see a run."""
+
+    progress: bool
+    tell: Callable[[str], None]
+
+
 def _execute_held(
-    run: Run, folder: RunFolder, command: str, progress: bool, again: bool
+    run: Run, folder: RunFolder, command: str, shown: _Watched, again: bool
 ) -> Execution:
     """Do a run in a folder that is held; `again`: one is there whole, and stays until this is."""
     work = folder.work
     told = work if again else folder  # where it is said how far this run is
     status = Status(RunState.RUNNING, now())
     try:
-        folder.begin()
+        found = earlier(folder, run)
+        folder.begin(found.folder if found.trials else None)
+        found = replace(found, folder=folder.before)
         manifest = _manifest(run, folder, command)
         before = files_of(folder, Status.read(folder.path).manifest)
         digest = replace(manifest, files=before).write(told)  # what it is, should it be killed
@@ -131,17 +147,17 @@ def _execute_held(
         write_whole(work.path / CONFIG, config.encode())
         with watched() as read:
             optimum = run.task.optimum(run.problem)
-            rows, recorded = _do_trials(run, optimum, work, progress)
-        place = folder.path.resolve()  # recorders may read what they have written
-        late = {p: d for p, d in read.items() if not Path(p).resolve().is_relative_to(place)}
+            done, recorded = _do_trials(run, optimum, _Kept(folder, found, read), shown)
+        rows, late = [each.row for each in done], _outside(folder, read)
+        late = {path: digest for each in done for path, digest in each.late.items()} | late
         values = [row.values() for row in rows]
         write_whole(work.path / TRIALS, _table(run, values))
         names = [CONFIG, TRIALS, *recorded]
         came = results(type(run.task), {name: [row[name] for row in values] for name in values[0]})
         files = {name: FileEntry.of(work, name) for name in names}
-        done = replace(manifest, files=files, late_inputs=late, results=came)
+        whole = replace(manifest, files=files, late_inputs=late, results=came)
         state = RunState.DONE if optimum.feasible else RunState.INFEASIBLE
-        finish(folder, done, replace(status, state=state, finished=now()))
+        finish(folder, whole, replace(status, state=state, finished=now()))
         return Execution(folder.path, state, rows, [*names, MANIFEST, STATUS])
     except BaseException as error:
         interrupted = isinstance(error, KeyboardInterrupt)
@@ -154,49 +170,98 @@ def _execute_held(
         raise
 
 
+class _Kept(NamedTuple):
+    """What is kept while trials are done, so that the run can go on if it is cut short."""
+
+    folder: RunFolder
+    earlier: Earlier
+    read: Reads
+
+
+def _outside(folder: RunFolder, read: Inputs) -> dict[str, str]:
+    """Leave out what lies in the run's folder: recorders may read what they have written."""
+    place = folder.path.resolve()
+    return {p: d for p, d in read.items() if not Path(p).resolve().is_relative_to(place)}
+
+
 def _do_trials(
-    run: Run, optimum: Plan, folder: RunFolder, progress: bool
-) -> tuple[list[Any], list[str]]:
+    run: Run, optimum: Plan, kept: _Kept, shown: _Watched
+) -> tuple[list[Done], list[str]]:
     from tqdm import tqdm
 
-    rows: list[Any] = []
-    step = found = 0
+    work, rows, step = kept.folder.work, list[Done](), 0
+    started = run_started(run, optimum)
+    what = printable(f"{run.problem.map.name} {run.method.name}")
+    journal = None
 
     def record(event: Event) -> None:
         for recorder in run.recorders:
             recorder.record(event)
 
-    batch = Batch(run.experiment, run.method.name, run.problem, run.seed, run.trials, run.threads)
-    bar = tqdm(
-        run.task.trials(batch, optimum),
-        desc=printable(f"{run.problem.map.name} {run.method.name}"),
-        total=run.trials,
-        unit="trial",
-        leave=False,
-        disable=None if progress else True,
-    )
     try:
+        taken, trials = _trials(run, optimum, started, kept)
+        count = len(taken.trials)
+        if count:
+            shown.tell(f"{what}: goes on after trial {count - 1}, {count} of {run.trials} are done")
+        journal = Journal(work, run)
         for recorder in run.recorders:
-            recorder.open(str(folder.path))
-        record(run_started(run, optimum))
+            recorder.open(str(work.path))
+        record(started)
+        for done, events in zip(taken.trials[:-1], taken.events(run), strict=True):
+            for event in events:
+                record(event)
+            step += done.steps
+            journal.add(done)
+            rows.append(done)
+        bar = tqdm(
+            trials,
+            desc=what,
+            total=run.trials,
+            initial=len(rows),
+            unit="trial",
+            leave=False,
+            disable=None if shown.progress else True,
+        )
         for trial in bar:
             if run.recorders:
                 for event in trial.events(step):
                     record(event)
             step += trial.steps
-            found += trial.found
-            rows.append(trial.row)
-        record(RunFinished(step, run.trials, found))
+            late = _outside(kept.folder, kept.read.note())
+            rows.append(Done(trial.row, trial.found, trial.steps, late))
+            journal.add(rows[-1])
+        record(RunFinished(step, run.trials, sum(done.found for done in rows)))
+        journal.close()
         return rows, [name for recorder in run.recorders for name in recorder.close()]
     except BaseException as error:
         for recorder in run.recorders:
             with suppress(OSError):  # on a full disk a file's last bytes have no room, either
                 recorder.abort()
+        if journal is not None:
+            journal.close()
         where = component_of(error)
         if where.startswith("recorder "):
-            with named(f"{folder.path}, {where}"):
+            with named(f"{work.path}, {where}"):
                 raise
         raise
+
+
+def _trials(
+    run: Run, optimum: Plan, started: RunStarted, kept: _Kept
+) -> tuple[Earlier, Iterator[Trial]]:
+    """Do the trials that are left, first the last one once more that an earlier run has done.
+
+    If that one comes to something else now, nothing is taken up, and all trials are left.
+    """
+    batch = Batch(run.experiment, run.method.name, run.problem, run.seed, run.trials, run.threads)
+    if kept.earlier.trials:
+        first = len(kept.earlier.trials) - 1
+        trials = run.task.trials(batch._replace(first=first), optimum)
+        trial = next(trials)
+        if kept.earlier.agrees(trial, started):
+            return kept.earlier, chain([trial], trials)
+        kept.folder.clear(kept.folder.work)
+    return Earlier(kept.folder.before), run.task.trials(batch, optimum)
 
 
 def _table(run: Run, rows: list[dict[str, Any]]) -> bytes:

@@ -36,8 +36,28 @@ _opened: list[list[str]] = []
 """The paths that were opened for reading, for each `watched` that is under way."""
 
 
+class Reads(dict[str, str]):
+    """`Inputs`, as far as they were noted."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.opened: list[str] = []
+        self._seen: set[str] = set()
+
+    def note(self) -> Inputs:
+        """Take in the files that were opened since, as they are now; gives those that are new."""
+        count = len(self.opened)  # other threads may open more meanwhile
+        paths = dict.fromkeys(self.opened[:count])
+        del self.opened[:count]
+        unseen = paths.keys() - self._seen
+        self._seen |= unseen
+        new = {p: _sha256(p) for p in paths if p in unseen and _is_input(Path(p).resolve())}
+        self.update(new)
+        return new
+
+
 @contextmanager
-def watched() -> Iterator[dict[str, str]]:
+def watched() -> Iterator[Reads]:
     """Note the files that are read meanwhile.
 
     Left out are those that are no input: all code, files of Python, of libraries, of gapath but
@@ -46,20 +66,17 @@ def watched() -> Iterator[dict[str, str]]:
 
     Yields
     ------
-    dict of str to str
-        `Inputs`, filled when the context ends.
+    Reads
+        Noted when the context ends, at the latest.
     """
     _listen()
-    paths: list[str] = []
-    _opened.append(paths)
-    found: dict[str, str] = {}
+    found = Reads()
+    _opened.append(found.opened)
     try:
         yield found
     finally:
         _opened.pop()
-    for path in dict.fromkeys(paths):
-        if _is_input(Path(path).resolve()):
-            found[path] = _sha256(path)
+    found.note()
 
 
 def contents(inputs: Inputs) -> list[str]:

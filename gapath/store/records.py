@@ -14,7 +14,7 @@ from gapath.discovery import kinds
 from gapath.errors import InputError, require
 from gapath.store.durable import named, write_whole
 from gapath.store.results import Results
-from gapath.store.runfolder import LOCK, WORK, RunFolder, is_locked
+from gapath.store.runfolder import BEFORE, LOCK, PROGRESS, WORK, RunFolder, is_locked
 from gapath.store.settings import Flat, Value, read_settings
 from gapath.store.shape import shaped
 from gapath.store.status import (
@@ -46,7 +46,7 @@ class FileEntry:
             return cls(folder.sha256(name), (folder.path / name).stat().st_size)
 
 
-_NO_FILES = ("", ".", "..", STATUS, MANIFEST, LOCK, WORK)
+_NO_FILES = ("", ".", "..", STATUS, MANIFEST, LOCK, WORK, BEFORE, PROGRESS)
 
 
 def _check_name(name: str, where: str) -> None:

@@ -21,7 +21,13 @@ LOCK = "run.lock"
 """The file whose lock (flock) a run holds."""
 
 WORK = "run.part"
-"""The folder of the run under way, or of one that was cut short; the next run empties it."""
+"""The folder of the run under way, or of one that was cut short, which the next run takes up."""
+
+BEFORE = "run.before"
+"""The folder of a run that was cut short, while another takes up what it did."""
+
+PROGRESS = "trials.jsonl"
+"""The file within `WORK` that says which trials were done."""
 
 _PATIENCE = 10.0  # seconds for which looks at a lock may keep a run from it
 
@@ -40,6 +46,11 @@ class RunFolder:
     def work(self) -> "RunFolder":
         """The folder of the run under way."""
         return RunFolder(self.path / WORK)
+
+    @property
+    def before(self) -> "RunFolder":
+        """The folder of a run that was cut short."""
+        return RunFolder(self.path / BEFORE)
 
     def create(self) -> None:
         """Make the folder, durably.
@@ -102,21 +113,32 @@ class RunFolder:
             expected = "a folder on one with flock, such as a local disk"
             raise InputError("output", f"{self.path}, {found}", expected) from error
 
-    def begin(self) -> None:
-        """Make the folder of the run under way anew; raises InputError if it cannot be."""
-        self.clear()
-        with named(self.work.path):
-            self.work.path.mkdir()
+    def begin(self, kept: "RunFolder | None" = None) -> None:
+        """Make the folder of the run under way anew; raises InputError if it cannot be.
+
+        Parameters
+        ----------
+        kept : RunFolder or None
+            `work` or `before`: stays, as `before`.
+        """
+        work = self.work.path
+        self.clear(kept)
+        with named(work):
+            if kept == self.work:
+                work.replace(self.before.path)
+            work.mkdir()
             sync_folder(self.path)
 
-    def clear(self) -> None:
-        """Remove the folder of the run under way; raises InputError if it cannot be."""
-        work = self.work.path
-        with named(work):
-            if work.is_dir() and not work.is_symlink():
-                shutil.rmtree(work)
-            else:
-                work.unlink(missing_ok=True)
+    def clear(self, kept: "RunFolder | None" = None) -> None:
+        """Remove `work` and `before` but `kept`; raises InputError if that cannot be done."""
+        for folder in (self.before, self.work):
+            with named(folder.path):
+                if folder == kept:
+                    continue
+                if folder.path.is_dir() and not folder.path.is_symlink():
+                    shutil.rmtree(folder.path)
+                else:
+                    folder.path.unlink(missing_ok=True)
 
     def sha256(self, name: str) -> str:
         """Hash a file: 64 hexadecimal digits; raises OSError unless it is regular and read."""

@@ -6,7 +6,7 @@ which has that of the manifest. Then
 
 1. the status takes its place in the run's folder. From this one step on the new run counts;
 2. the files, then the manifest take their places, and what only the run before had goes;
-3. the folder `WORK` goes.
+3. the folder `WORK` goes, and that of a run which was cut short and taken up, `BEFORE`.
 
 Before step 1 a run that was there before is untouched. Whoever is killed after it leaves a status
 that speaks of a manifest that still lies in `WORK`: whoever takes the lock next finishes steps 2

@@ -186,7 +186,7 @@ class Task:
         return Plan(plan.status, plan.path, path_weights(grid, plan.path))
 
     def trials(self, batch: Batch, optimum: Plan) -> Iterator[Trial]:
-        """Drive with the random streams of trials 0 to trials - 1.
+        """Drive with the random streams of trials `Batch.first` to trials - 1.
 
         Parameters
         ----------
@@ -202,7 +202,7 @@ class Task:
         """
         problem, seed = batch.problem, batch.seed
         self.once(problem, seed, 0, WARM_UP)
-        for trial in range(batch.trials):
+        for trial in range(batch.first, batch.trials):
             driven = self.once(problem, seed, trial)
             row = drive_row(batch, trial, driven, optimum)
             events = partial(drive_events, driven, problem.map.cols, seed, trial)

@@ -81,7 +81,7 @@ class Task:
         return shortest_path(problem)
 
     def trials(self, batch: Batch, optimum: Plan) -> Iterator[Trial]:
-        """Plan with the random streams (seed, 0) to (seed, trials - 1).
+        """Plan with the random streams (seed, `Batch.first`) to (seed, trials - 1).
 
         Parameters
         ----------
@@ -98,7 +98,13 @@ class Task:
         quantity = self.planner.minimises
         least = least_of(batch.problem, optimum, quantity)
         answers = plan_trials(
-            batch.problem, optimum, self.planner, batch.seed, batch.trials, batch.threads
+            batch.problem,
+            optimum,
+            self.planner,
+            batch.seed,
+            batch.trials,
+            batch.threads,
+            batch.first,
         )
         for answer in answers:
             row = PlanRow(**plan_values(batch, answer, optimum, quantity, least))

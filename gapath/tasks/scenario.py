@@ -183,14 +183,17 @@ class Task:
         Yields
         ------
         Trial
-            The repetitions of the first query, then those of the next.
+            The repetitions of the first query, then those of the next; from `Batch.first` on.
         """
         queries = batch.problem.queries or _only(batch.problem)
         if optimum.feasible:  # compiles the kernels before the clock runs
             self.planner.plan(batch.problem, stream(batch.seed, 0))
-        work = partial(self._ask, batch, queries, batch.trials // len(queries))
-        for asked in in_order(work, range(len(queries)), batch.threads):
+        times = batch.trials // len(queries)
+        work = partial(self._ask, batch, queries, times)
+        for asked in in_order(work, range(batch.first // times, len(queries)), batch.threads):
             for answer in asked.answers:
+                if answer.number < batch.first:
+                    continue
                 row = self._row(batch, queries, asked, answer)
                 first = answer is asked.answers[0]
                 events = partial(_told, queries, asked, answer, batch.seed, first)
@@ -199,18 +202,20 @@ class Task:
     def _ask(self, batch: Batch, queries: Queries, times: int, index: int) -> _Asked:
         """Ask a query so many times; its optimum is found once, outside of the times.
 
-        After them, so that no planner finds the map warmer than another.
+        After them, so that no planner finds the map warmer than another. Of the query in which
+        `Batch.first` lies the first answer is given, too: it may be the optimum.
         """
         problem, row = _problem(batch.problem, queries, index), int(queries.numbers[index])
-        numbers = range(index * times, (index + 1) * times)
+        begin = index * times
+        numbers = [begin, *range(max(begin + 1, batch.first), begin + times)]
         if problem is None or not _solvable(problem):
             none = Plan(PlanStatus.INFEASIBLE)
             answers = [TimedPlan(number, none, math.nan) for number in numbers]
             return _Asked(index, problem, none, math.nan, answers)
         if self._takes(problem):
             answers = [
-                plan_timed(problem, self.planner, number, (batch.seed, time, row))
-                for time, number in enumerate(numbers)
+                plan_timed(problem, self.planner, number, (batch.seed, number - begin, row))
+                for number in numbers
             ]
         else:
             refused = Plan(PlanStatus.NOT_FOUND)

@@ -27,6 +27,7 @@ from gapath.recorders.mcap.format import (
     schema,
 )
 from gapath.recorders.mcap.messages import Messages
+from gapath.recorders.mcap.reader import read_prefix
 from gapath.store.durable import new_file, part_of, publish
 
 FILE = "run.mcap"
@@ -180,6 +181,27 @@ class Recorder:
     @property
     def _part(self) -> Path:
         return part_of(self._path)
+
+    def recorded(self, folder: str) -> Iterator[Event]:
+        """Give the whole events of a log that was cut short, which nobody writes any more.
+
+        Parameters
+        ----------
+        folder : str
+            Where it was begun.
+
+        Yields
+        ------
+        Event
+            In order, none missing in between.
+
+        Raises
+        ------
+        InputError
+            If not even the first event is whole.
+        """
+        whole = Path(folder) / FILE
+        return read_prefix(whole if whole.exists() else part_of(whole))
 
     def record(self, event: Event) -> None:
         """Write what an event comes to; raises InputError or OSError as `LogWriter.write` does."""

@@ -74,7 +74,7 @@ class Task:
         """Plan both ways with the random streams of trials 0 to trials - 1."""
         there = batch.problem
         back = Problem(there.map, there.target, there.start, there.corner_cutting)
-        for trial in range(batch.trials):
+        for trial in range(batch.first, batch.trials):
             begin = time.perf_counter()
             first = self.planner.plan(there, stream(batch.seed, trial))
             second = self.planner.plan(back, stream(batch.seed, trial, BACK))
