@@ -1,23 +1,50 @@
-"""The command ``gapath``, started without collecting what lives as long as the process."""
+"""The commands as they are started: first of all they learn how to end (`gapath.commands.signals`).
+
+What they import takes a second, so each imports its own only then.
+"""
 
 import gc
-import sys
+
+from gapath.commands.signals import watch
 
 
 def main() -> None:
-    """Run the command `gapath.commands.run.main`.
+    """Run the command `gapath.commands.run.main`, without collecting what lives as long as it.
 
     Modules are some hundred thousand objects, none of them garbage. To look for garbage among
     them again and again takes an eighth of a short command's time.
     """
+    watch("gapath")
     gc.disable()
-    try:
-        from gapath.commands.run import main as command
-    except KeyboardInterrupt:
-        sys.exit(130)
+    from gapath.commands.run import main as command
+
     gc.freeze()
     gc.enable()
     command()
+
+
+def log() -> int:
+    """Run the command `gapath.commands.log.main`."""
+    watch("gapath-log")
+    from gapath.commands.log import main as command
+
+    return command()
+
+
+def report() -> int:
+    """Run the command `gapath.pipelines.report.cli.main`."""
+    watch("gapath-report")
+    from gapath.pipelines.report.cli import main as command
+
+    return command()
+
+
+def genotype() -> int:
+    """Run the command `gapath.commands.genotype.main`."""
+    watch("gapath-genotype")
+    from gapath.commands.genotype import main as command
+
+    return command()
 
 
 if __name__ == "__main__":

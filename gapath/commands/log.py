@@ -4,7 +4,6 @@ import argparse
 import os
 import subprocess
 import sys
-import tempfile
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -16,7 +15,7 @@ from gapath.errors import FAULTS, InputError, printable, require
 from gapath.events import Event, Finished, RunFinished, RunStarted
 from gapath.recorders import mcap
 from gapath.recorders.mcap import FILE
-from gapath.store.durable import part_of
+from gapath.store.durable import part_of, scratch
 from gapath.store.records import MANIFEST, read_record
 from gapath.store.runfolder import WORK
 from gapath.store.settings import text_of
@@ -294,9 +293,9 @@ def _record(path: Path, trials: list[int], folder: Path, limits: mcap.Limits) ->
 def _view(arguments: argparse.Namespace) -> int:
     path = _log_of(arguments.file)
     require(path.is_file(), path, "no such file", "a log or a recording (.rrd)")
-    with tempfile.TemporaryDirectory() as folder:
+    with scratch() as folder:
         if path.suffix != ".rrd":
-            path = Path(folder) / _record(path, [0], Path(folder), _limits(arguments))[0]
+            path = folder / _record(path, [0], folder, _limits(arguments))[0]
         code = subprocess.run(
             [sys.executable, "-m", "rerun_cli", "--bind", _LOCAL, str(path)], check=False
         ).returncode

@@ -38,7 +38,7 @@ from gapath.running.work import told, work
 from gapath.store.runfolder import RunFolder
 from gapath.store.status import RunState
 
-BAD_INPUT, FAILED, BUSY, INTERRUPTED = 2, 1, 75, 130
+BAD_INPUT, FAILED, BUSY = 2, 1, 75
 
 KEPT = 1000
 """Configurations of a sweep's jobs that are kept between check and run: each takes 0.2 MB."""
@@ -273,8 +273,8 @@ def describe(run: Run, execution: Execution, short: bool) -> str:
 def main() -> None:
     """Run the command ``gapath``.
 
-    Exits with 0, `FAILED`, `BAD_INPUT` (also what cannot be written), `INTERRUPTED`, or `BUSY` if
-    nothing is wrong but another process does a job. Of a sweep the first job that failed decides.
+    Exits with 0, `FAILED`, `BAD_INPUT` (also what cannot be written), or `BUSY` if nothing is wrong
+    but another process does a job. Of a sweep the first job that failed decides.
     """
     Plugins.instance().register(OtherConfigurations)
     SourcesRegistry.instance().types["file"] = Bounded
@@ -295,8 +295,6 @@ def main() -> None:
         words, sweep = given.overrides, given.multirun
         check_once(words)
         hydra_main(version_base="1.3", config_path=conf_folder(), config_name="config")(task)()
-    except KeyboardInterrupt:
-        sys.exit(INTERRUPTED)
     except BrokenPipeError:  # gapath --help | head
         sys.stderr.close()
     except Exception as error:  # a job catches its own: this is a command line that is wrong

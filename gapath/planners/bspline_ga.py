@@ -159,7 +159,7 @@ class Planner:
     def most_at_once(self) -> int:
         """Runs of one `plan_many`, at most 64: more save nothing.
 
-        Their histories take 4 MiB at most, and they end within seconds: nobody can interrupt them.
+        Their histories take 4 MiB at most, and they end within seconds, so that threads share them.
         """
         history = self.max_epochs * (24 + 8 * self.control_points)
         evaluated = self.max_epochs * self.population

@@ -8,13 +8,19 @@ not a device or a pipe.
 import contextlib
 import errno
 import os
+import shutil
 import stat
-from collections.abc import Iterator
+import tempfile
+from collections.abc import Callable, Iterator
+from functools import partial
 from io import FileIO
 from pathlib import Path
 from typing import IO
 
 from gapath.errors import InputError
+
+LAST: list[Callable[[], object]] = []
+"""What a command does last that a signal ends, beside its other threads; nothing may be raised."""
 
 
 @contextlib.contextmanager
@@ -98,6 +104,29 @@ def open_regular(path: str | Path, links: bool = False) -> FileIO:
         file.close()
         raise OSError(errno.EINVAL, "no regular file", str(path))
     return file
+
+
+@contextlib.contextmanager
+def scratch(place: Path | None = None) -> Iterator[Path]:
+    """Make a folder that goes again, also where a signal ends a command.
+
+    Parameters
+    ----------
+    place : Path, optional
+        The folder that it is in, else the system's for such.
+
+    Yields
+    ------
+    Path
+        The folder.
+    """
+    with tempfile.TemporaryDirectory(dir=place) as folder:
+        remove = partial(shutil.rmtree, folder, ignore_errors=True)
+        LAST.append(remove)
+        try:
+            yield Path(folder)
+        finally:
+            LAST.remove(remove)
 
 
 def make_folder(path: Path) -> None:

@@ -3,14 +3,16 @@
 import hashlib
 import json
 import os
-from dataclasses import asdict, dataclass
+import threading
+from contextlib import suppress
+from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
 from gapath.errors import InputError, require
-from gapath.store.durable import open_regular, write_whole
+from gapath.store.durable import LAST, open_regular, write_whole
 from gapath.store.runfolder import LOCK, RunFolder, is_locked
 
 STATUS = "status.json"
@@ -70,7 +72,9 @@ class Status:
 
     def write(self, folder: RunFolder) -> None:
         """Write it, whole."""
-        write_whole(folder.path / STATUS, self.sealed())
+        with TURN:
+            write_whole(folder.path / STATUS, self.sealed())
+            _under_way[:] = [(folder, self)] if self.state is RunState.RUNNING else []
 
     def sealed(self) -> bytes:
         """Give what stands in the file: the fields, and a hash of them."""
@@ -111,6 +115,23 @@ class Status:
     def date(self) -> str:
         """When it ended, else when it began."""
         return self.finished or self.started
+
+
+TURN = threading.RLock()
+"""Held by who says how a run ended: the run, or the signal that ends its process."""
+
+_under_way: list[tuple[RunFolder, Status]] = []
+
+
+def _interrupt() -> None:
+    """Say that the run under way is interrupted; from now on it can say nothing else."""
+    TURN.acquire()
+    for folder, status in list(_under_way):
+        with suppress(InputError):
+            replace(status, state=RunState.INTERRUPTED, finished=now()).write(folder)
+
+
+LAST.append(_interrupt)
 
 
 def as_json(content: dict[str, Any]) -> bytes:

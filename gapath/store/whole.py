@@ -22,7 +22,7 @@ from gapath.store.inputs import unchanged
 from gapath.store.records import CONFIG, MANIFEST, TRIALS, FileEntry, Manifest
 from gapath.store.runfolder import RunFolder
 from gapath.store.settings import Flat, text_of
-from gapath.store.status import STATUS, WHOLE, Status
+from gapath.store.status import STATUS, TURN, WHOLE, Status
 
 
 def is_whole(folder: RunFolder, settings: Flat) -> bool:
@@ -85,9 +85,10 @@ def finish(folder: RunFolder, manifest: Manifest, status: Status) -> None:
     for name in (*manifest.files, MANIFEST, STATUS):
         place = folder.path / name
         require(not place.is_dir() or place.is_symlink(), place, "a folder", "no folder there")
-    replace(status, manifest=manifest.write(folder.work)).write(folder.work)
-    publish(folder.work.path / STATUS, folder.path / STATUS)
-    settle(folder)
+    with TURN:
+        replace(status, manifest=manifest.write(folder.work)).write(folder.work)
+        publish(folder.work.path / STATUS, folder.path / STATUS)
+        settle(folder)
 
 
 def is_finished(folder: RunFolder) -> bool:

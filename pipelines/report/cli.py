@@ -34,7 +34,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        The exit code: 0, 2 for a folder that holds nothing to report, 130 if interrupted.
+        The exit code: 0, 2 for a folder that holds nothing to report.
     """
     arguments = list(sys.argv[1:] if argv is None else argv)
     try:
@@ -62,8 +62,6 @@ def main(argv: Sequence[str] | None = None) -> int:
         right = "a file or folder that can be read, or written"
         print(f"gapath-report: {InputError(where, found, right)}", file=sys.stderr)
         return 2
-    except KeyboardInterrupt:
-        return 130
     return 0
 
 

@@ -125,7 +125,7 @@ def test_a_planner_may_be_given_kernels_of_ones_own():
 def test_long_histories_are_not_kept_many_at_a_time():
     assert planner(max_epochs=500).most_at_once == 64
     assert planner(max_epochs=10**6).most_at_once == 1
-    assert planner(max_epochs=500, population=10**4).most_at_once == 2  # they cannot be interrupted
+    assert planner(max_epochs=500, population=10**4).most_at_once == 2  # so that threads share them
 
 
 def test_it_never_stops_before_min_epochs():

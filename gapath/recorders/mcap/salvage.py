@@ -3,7 +3,6 @@
 import contextlib
 import os
 import struct
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import IO, NamedTuple
@@ -29,7 +28,7 @@ from gapath.recorders.mcap.format import NS_PER_STEP, TOPICS
 from gapath.recorders.mcap.log import FILE, LogWriter
 from gapath.recorders.mcap.messages import event
 from gapath.recorders.mcap.reader import BEGUN, Head, read_events, refusing
-from gapath.store.durable import publish
+from gapath.store.durable import publish, scratch
 
 _HEAD = struct.Struct("<BQ")
 _MARK = struct.pack("<I", 4) + b"zstd"
@@ -89,8 +88,8 @@ def salvage(path: str | Path, output: str | Path, limits: Limits = LARGE) -> Sav
                 raise InputError("log", "nothing whole in it", BEGUN) from error
             lost, count = _lost(file, place, limits, run.trials)
             require(count > 0, "messages", "nothing whole in it", "at least a chunk that is")
-        with tempfile.TemporaryDirectory(dir=output.parent) as folder:
-            whole = Path(folder) / FILE
+        with scratch(output.parent) as folder:
+            whole = folder / FILE
             with whole.open("wb") as new:
                 writer = LogWriter(new, head.text["gapath_log_version"], lost)
                 for _ in writer.begin(run):

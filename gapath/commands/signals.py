@@ -1,0 +1,70 @@
+"""Control-C and SIGTERM end a command at once, with one line, whatever it is doing.
+
+Python itself tells the main thread, between two lines of Python: not while a kernel or a library's
+machine code runs, and in the middle of whatever comes next, such as an import. Here the system's
+handler wakes another thread, which kernels let run beside them, and that ends the process as a
+kill would: run folders are safe against it (`gapath.store.whole`). Whoever imports gapath keeps
+the handlers that there are; only `gapath.__main__` asks for these.
+"""
+
+import os
+import select
+import signal
+import sys
+import threading
+from contextlib import suppress
+
+PATIENCE = 0.4
+"""Seconds for last words, should a disk be slow; a second signal does not wait for them."""
+
+_WORDS = {int(signal.SIGINT): "interrupted", int(signal.SIGTERM): "terminated"}
+
+
+def watch(command: str) -> None:
+    """End this process on either signal from now on, with exit code 128 + its number.
+
+    One that was ignored, as Control-C is of jobs in the background of a script, still is.
+
+    Parameters
+    ----------
+    command : str
+        Its name, for the line on standard error.
+    """
+    read, write = os.pipe()
+    os.set_blocking(write, False)
+    signal.set_wakeup_fd(write, warn_on_full_buffer=False)
+    threading.Thread(target=_wait, args=(command, read), daemon=True).start()
+    for number in _WORDS:
+        if signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, lambda *given: None)  # Python writes into the pipe
+
+
+def _wait(command: str, read: int) -> None:
+    while (number := os.read(read, 1)[0]) not in _WORDS:
+        pass
+    try:
+        threading.Thread(target=_end, args=(command, number), daemon=True).start()
+        select.select([read], [], [], PATIENCE)
+    finally:
+        os._exit(128 + number)
+
+
+def _end(command: str, number: int) -> None:
+    try:
+        _tell(f"{command}: {_WORDS[number]}")
+        durable = sys.modules.get("gapath.store.durable")
+        for action in getattr(durable, "LAST", ()):  # what was not imported yet has none
+            action()
+    finally:
+        os._exit(128 + number)
+
+
+def _tell(line: str) -> None:
+    """Write a line, and let no other follow; not through `sys.stderr`, which others may hold."""
+    if sys.stderr is None:  # closed when Python started: 2 is another file
+        return
+    bar = "\r\x1b[K" if os.isatty(2) else ""  # one that stands there goes
+    with suppress(OSError, ValueError):
+        if select.select([], [2], [], 0)[1]:  # a pipe that nobody empties has no room
+            os.write(2, f"{bar}{line}\n".encode())
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
