@@ -59,6 +59,15 @@ sweep: $(VENV)/ready ## vary what S04 leaves open: 36 settings of 24 cells (some
 test: $(VENV)/ready ## run all tests
 	@$(BIN)/python -m pytest
 
+.PHONY: reproduce
+reproduce: $(VENV)/ready ## do every published experiment, small, and compare with its golden hashes (three minutes)
+	@$(BIN)/python -m pytest --tb=no --figures tests/test_golden.py -k an_experiment
+
+# One after the other, since some measure memory or time, and some take both cores.
+.PHONY: reliability
+reliability: $(VENV)/ready ## try at length what docs/reliability.md promises; a line for each harness
+	@GAPATH_RELIABILITY=long $(BIN)/python -m pytest -n 0 --figures tests/reliability
+
 # Nothing sees into a compiled kernel, so the tests of kernels run once more without the compiler:
 # some two minutes. test_evaluation would take many more, as would planners and drives, whose kernels
 # a test of test_golden runs without it. Kernels on vectors, which only the compiler understands,

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import settings
 
 TESTS = Path(__file__).parent
-# twins, strategies and commands; the benchmarks, which are not installed
-sys.path[:0] = map(str, (TESTS, TESTS / "twins", TESTS.parent))
+# twins, strategies and commands; what harnesses share; the benchmarks, which are not installed
+sys.path[:0] = map(str, (TESTS, TESTS / "twins", TESTS / "reliability", TESTS.parent))
 sys.path.append(str(TESTS / "plugin"))  # not before that package where it is installed
 
 settings.register_profile("gapath", deadline=None, derandomize=True, max_examples=100)
@@ -48,6 +48,14 @@ def gapath(monkeypatch, capfd, tmp_path):
 
 def pytest_addoption(parser):
     parser.addoption("--update-golden", action="store_true", help="accept today's results")
+    parser.addoption("--figures", action="store_true", help="show what tests say they tried")
+
+
+def pytest_terminal_summary(terminalreporter, config):
+    if config.getoption("--figures"):
+        for report in map(terminalreporter.getreports, ("passed", "failed")):
+            for test in report:
+                terminalreporter.write(test.capstdout)
 
 
 @pytest.fixture

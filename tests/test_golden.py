@@ -1,20 +1,26 @@
 """Golden results: the same seed gives the same bytes, on every machine and however compiled.
 
+`make reproduce` does the published experiments among them and says of each whether it is equal;
 `make golden` accepts today's results; the difference then shows what changed.
 """
 
+import contextlib
 import hashlib
+import io
 import json
 import os
+import shlex
 import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
+import pyarrow.parquet as pq
 import pytest
 from mcap.reader import make_reader
 
 from gapath.api import load_map
+from gapath.commands import run as cli
 from gapath.components import build
 from gapath.discovery import yaml_values
 from gapath.grid import GridMap
@@ -22,7 +28,7 @@ from gapath.mapio.generated import CLASSES as GENERATED
 from gapath.mapio.reconstructed import CLASSES
 from gapath.problem import Problem
 from gapath.recorders import mcap
-from gapath.running.config import Run
+from gapath.running.config import Run, conf_folder
 from gapath.running.experiment import execute
 from gapath.running.naming import Method
 from gapath.store.settings import flatten
@@ -30,26 +36,35 @@ from gapath.tasks.plan import Task as PlanTask
 
 GOLDEN = Path(__file__).parent / "golden"
 
-TABLE1 = [
-    (map_class, planner)
-    for planner in ("ga1", "ga2", "ga3", "dijkstra", "astar")
-    for map_class in CLASSES
-]
-S04 = [
-    (drawing, planner)
-    for planner in ("geisler", "hermanu", "sedighi")
-    for drawing in ("s04_sp03", "s04_sp07")
-]
-M22 = [
-    (scene, planner)
-    for planner in (
-        "visibility_ga",
-        "visibility_ga_resized",
-        "visibility_ga_corners",
-        "inflated_ga3",
-    )
-    for scene in ("m22_scene03", "m22_scene07")
-]
+INSTANCES = "map.instance=0,29"
+PUBLISHED = {
+    "classes": [INSTANCES, "trials=1"],
+    "drive_choices": ["map.instance=29"],
+    "drive_classes": ["map.instance=29", "trials=1"],
+    "drives": ["trials=1"],
+    "drives_enclosed": ["trials=1"],
+    "field": ["scenario.drawn=2"],
+    "field/large/terrain": ["scenario.drawn=2", "map.width=300", "map.height=99"],
+    "field/large/uniform": [
+        "map.instance=1",
+        "scenario.drawn=1",
+        "map.width=300",
+        "map.height=150",
+    ],
+    "m22": ["trials=2"],
+    "m22_concave": ["trials=2"],
+    "s04_drives": ["trials=1"],
+    "s04_sweep": [
+        "trials=1",
+        "planner.population=50",
+        "planner.mutation_probability=0.02",
+        "planner.crossover_probability=0.8,0.95",
+    ],
+    "s04_table1": ["trials=2", "planner.max_epochs=100"],
+    "table1": ["trials=2"],
+}
+"""Every experiment that needs no data from elsewhere, and what makes it small."""
+
 MEMETIC = [
     (map_class, planner)
     for planner in ("memetic_quick", "memetic_quality")
@@ -118,29 +133,53 @@ def check(ours, experiment, name, update):
     assert ours == golden[name]
 
 
+def experiment(name, folder, monkeypatch):
+    """Do all runs of an experiment, as the command does; a line for each run, by what varies."""
+    words = [f"experiment={name}", "seed=7", "recorder=[mcap]", *PUBLISHED[name]]
+    monkeypatch.setattr(sys, "argv", ["gapath", *words, f"output={folder}"])
+    with contextlib.redirect_stdout(io.StringIO()):
+        cli.main()
+    lines = {}
+    for manifest in folder.glob("*/*/manifest.json"):
+        command = shlex.split(json.loads(manifest.read_text())["command"])[1:]
+        varied = " ".join(word.partition("=")[2] for word in command if word not in words)
+        lines[varied] = f"{ended(manifest.parent)}; log {log_hash(manifest.parent / 'run.mcap')}"
+    return dict(sorted(lines.items()))
+
+
+def ended(folder):
+    """How the trials of a run ended."""
+    table = pq.read_table(folder / "trials.parquet")
+    end = "outcome" if "outcome" in table.column_names else "status"
+    ends = zip(table[end].to_pylist(), table["cost"].to_pylist(), strict=True)
+    return ", ".join(f"{status} {cost}" for status, cost in ends)
+
+
+def test_every_experiment_without_data_from_elsewhere_is_done():
+    there = Path(conf_folder()) / "experiment"
+    files = (*there.glob("*.yaml"), *there.glob("field/large/*.yaml"))
+    assert {path.relative_to(there).with_suffix("").as_posix() for path in files} == set(PUBLISHED)
+
+
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_an_experiment_gives_the_golden_results(name, tmp_path, monkeypatch, update_golden):
+    ours = experiment(name, tmp_path, monkeypatch)
+    path = GOLDEN / "experiments" / f"{name.replace('/', '_')}.json"
+    if update_golden:
+        path.write_text(json.dumps(ours, indent=1) + "\n")
+    golden = json.loads(path.read_text())
+    differ = [run for run in golden | ours if ours.get(run) != golden.get(run)]
+    print(f"{name}: {len(ours)} runs, {'all equal' if not differ else f'{len(differ)} differ'}")
+    for run in differ:
+        print(f"  {run}: golden {golden.get(run, 'none')}, now {ours.get(run, 'none')}")
+    assert not differ
+
+
 @pytest.mark.parametrize("map_class", GENERATED)
 def test_generated_maps_are_the_golden_ones(map_class, update_golden):
     grids = [load_map(map_class, width=170, height=90, instance=i) for i in (0, 7)]
     ours = [f"{grid.start} {grid.target} {grid.digest}" for grid in grids]
     check(ours, "generated", map_class, update_golden)
-
-
-@pytest.mark.parametrize(("map_class", "planner"), TABLE1)
-def test_table1_gives_the_golden_results(map_class, planner, tmp_path, update_golden):
-    ours = results(tmp_path, map_class, planner)
-    check(ours, "table1", f"{map_class} {planner}", update_golden)
-
-
-@pytest.mark.parametrize(("drawing", "planner"), S04)
-def test_s04_gives_the_golden_results(drawing, planner, tmp_path, update_golden):
-    ours = results(tmp_path, drawing, planner, max_epochs=100)
-    check(ours, "s04_table1", f"{drawing} {planner}", update_golden)
-
-
-@pytest.mark.parametrize(("scene", "planner"), M22)
-def test_m22_gives_the_golden_results(scene, planner, tmp_path, update_golden):
-    ours = results(tmp_path, scene, planner)
-    check(ours, "m22", f"{scene} {planner}", update_golden)
 
 
 @pytest.mark.parametrize(("map_class", "planner"), MEMETIC)
