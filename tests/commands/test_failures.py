@@ -18,10 +18,10 @@ def only(folder):
 
 @pytest.mark.parametrize("kind", [RuntimeError, SystemExit])
 def test_a_sweep_does_every_setting_and_goes_on_after_a_failure(gapath, monkeypatch, kind):
-    def fail(run, command):
+    def fail(run, command, **shown):
         if run.method.name == "ga1[population=8]":
             raise kind("no luck")
-        return execute(run, command)
+        return execute(run, command, **shown)
 
     execute = cli.execute
     monkeypatch.setattr(cli, "execute", fail)
