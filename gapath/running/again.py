@@ -109,11 +109,12 @@ def _problem(
     """Pose the problem; a file of the user's is not read, its map is the log's."""
     own = settings["map"]
     _check_maps(settings, task, logged)
+    told = [f"{name}, its name and source, is what the log has" for name in logged.maps]
     if "path" not in own:
         size, there = (own.get("width"), own.get("height")), (logged.map.cols, logged.map.rows)
         fits = None in size or size == there
         require(fits, "map.width, map.height", size, f"{there}, as the log's map is")
-        return read_problem(root, task, logged.maps), []
+        return read_problem(root, task, logged.maps), told
     rule = CornerCutting.named(root.corner_cutting)
     kind, path, grid = own["kind"], str(own["path"]), logged.map
     if load("map", kind).__module__.startswith("gapath.mapio."):
@@ -122,7 +123,8 @@ def _problem(
     start = _field(own.get("start")) or grid.start
     target = _field(own.get("target")) or grid.target
     grid = replace(grid, start=start, target=target)
-    remarks = [f"the map {grid.name} is what the log has of {path}"]
+    whole = "its instance, start, target and problems"
+    remarks = [f"the map {grid.name}, {whole}, is what the log has of {path}", *told]
     if isinstance(task, Posing):
         queries = logged.queries
         if queries is None or not len(queries):

@@ -85,7 +85,8 @@ def test_a_log_is_done_again_without_the_files_that_its_run_read(
     (tmp_path / "elsewhere").mkdir()
     monkeypatch.chdir(tmp_path / "elsewhere")
     assert log_cli.main(["verify", str(log)]) == 0
-    assert "reproduced" in capfd.readouterr().out
+    told = capfd.readouterr().out
+    assert "reproduced" in told and "; drive.known_map, its name and source, is what the" in told
     run = next(mcap.read_events(log))
     assert run.problem.maps["drive.known_map"].obstacles.sum() == 2
 

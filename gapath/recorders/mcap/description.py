@@ -30,6 +30,8 @@ _READ = ("4", "5", LOG_VERSION)
 """A log of version 5 has settings of recorders and its chunks end elsewhere; one of version 4 has
 no population besides."""
 
+_OF_RECORDERS = ("recorder.", "recorder[")
+
 LOST = "gapath_lost"
 """Name of the metadata record of a log that was saved and lacks something."""
 
@@ -191,7 +193,7 @@ def run_started(text: Mapping[str, str], files: Mapping[str, bytes]) -> RunStart
     digest = written.pop("sha256", None)
     require(_digest(written, files) == digest, "sha256", digest, "the digest of what is there")
     arrays, settings = _Arrays(files), told("settings", of_text)
-    of_recorders = [name for name in settings if name.startswith("recorder.")]
+    of_recorders = [name for name in settings if f"{name}.".startswith(_OF_RECORDERS)]
     good = version != LOG_VERSION or not of_recorders
     require(good, "settings", of_recorders[:1], f"none of recorders in version {LOG_VERSION}")
     return RunStarted(

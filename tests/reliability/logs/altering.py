@@ -322,8 +322,8 @@ def _consistent(parts):
         swap = {one: other, other: one}
         variants[f"{one} swapped"] = [swap.get(line, line) for line in lines]
     variants["a setting more"] = [*lines, "note: 1\n"]
-    variants["of a recorder"] = [*lines, 'recorder.mcap.made: "by nobody"\n']
-    variants["how it is run"] = [*lines, 'output: "mine"\n']
+    others = ("recorder", "recorder[0]", "recorder.mcap.made", "output")
+    variants |= {name: [*lines, f'{name}: "by nobody"\n'] for name in others}
     for what, new in variants.items():
         named = ("settings", "metadata")
         yield Altered(f"everywhere: {what}", named, _telling(parts, "settings", "".join(new)))
