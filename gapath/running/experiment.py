@@ -227,7 +227,8 @@ def _do_trials(
                 for event in trial.events(step):
                     record(event)
             step += trial.steps
-            late = _outside(kept.folder, kept.read.note())
+            new = kept.read.note()
+            late = _outside(kept.folder, new) if new else {}
             rows.append(Done(trial.row, trial.found, trial.steps, late))
             journal.add(rows[-1])
         record(RunFinished(step, run.trials, sum(done.found for done in rows)))
