@@ -39,9 +39,11 @@ def call(folder, prefix="", arguments=(1,), before=None, stderr=subprocess.PIPE)
 
     Gives its results, each with how many caches served it.
     """
+    # Python takes a file of the same second and size for the same.
+    own = {"NUMBA_CACHE_DIR": str(folder / "cache"), "PYTHONDONTWRITEBYTECODE": "1"}
     process = subprocess.run(
         [sys.executable, "-c", CALLS.format(arguments, prefix, prefix, prefix)],
-        env=os.environ | {"NUMBA_CACHE_DIR": str(folder / "cache")},
+        env=os.environ | own,
         cwd=folder,
         stdout=subprocess.PIPE,
         stderr=stderr,
