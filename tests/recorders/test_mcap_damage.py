@@ -80,7 +80,7 @@ def test_a_flipped_bit_never_changes_an_event_silently(log, tmp_path):
 @pytest.mark.parametrize("place", ["first chunk", "middle chunk", "message index", "data end"])
 def test_a_record_of_an_unknown_kind_is_not_skipped(place, log, tmp_path):
     with log.open("rb") as file:
-        summary = make_reader(file).get_summary()
+        summary = make_reader(file, validate_crcs=True).get_summary()
         file.seek(-8 - 20, 2)  # the footer's contents, the magic number
         data_end = struct.unpack("<Q", file.read(8))[0] - 13
     chunks = summary.chunk_indexes
@@ -147,7 +147,9 @@ def foreign(path, profile="ros2", library="gapath", metadata=None):
 def bomb(path, log, claimed, compressed):
     """Put a chunk of other contents into a log that has been cut off."""
     with log.open("rb") as file:
-        start = make_reader(file).get_summary().chunk_indexes[0].chunk_start_offset
+        start = (
+            make_reader(file, validate_crcs=True).get_summary().chunk_indexes[0].chunk_start_offset
+        )
     head = struct.pack("<QQQII4sQ", 0, 0, claimed, 0, 4, b"zstd", len(compressed))
     record = struct.pack("<BQ", 6, len(head) + len(compressed)) + head + compressed
     path.write_bytes(log.read_bytes()[:start] + record)

@@ -26,7 +26,7 @@ def run(request, tmp_path):
 
 def chunks_of(path):
     with path.open("rb") as file:
-        summary = make_reader(file).get_summary()
+        summary = make_reader(file, validate_crcs=True).get_summary()
     return summary.chunk_indexes, summary.statistics.message_count
 
 
