@@ -30,7 +30,7 @@ from gapath.store.rows import parquet
 from gapath.store.runfolder import Busy, RunFolder
 from gapath.store.settings import nested, tabular
 from gapath.store.status import STATUS, RunState, Status, now
-from gapath.store.whole import files_of, finish, is_finished, is_whole, settle
+from gapath.store.whole import check_places, files_of, finish, is_finished, is_whole, settle
 from gapath.task import Batch, Trial, columns, results
 
 
@@ -206,6 +206,8 @@ def _do_trials(
         journal = Journal(work, run)
         for recorder in run.recorders:
             recorder.open(str(work.path))
+        begun = [path.name.removesuffix(".part") for path in work.path.iterdir()]
+        check_places(kept.folder, begun)  # sooner than after hours
         record(started)
         for done, events in zip(taken.trials[:-1], taken.events(run), strict=True):
             for event in events:

@@ -14,6 +14,7 @@ and 3 (`settle`), which may be done any number of times. Nothing else in the fol
 """
 
 import os
+from collections.abc import Iterable
 from dataclasses import replace
 
 from gapath.errors import InputError, require
@@ -65,6 +66,13 @@ def files_of(folder: RunFolder, sha256: str = "") -> dict[str, FileEntry]:
         return {}
 
 
+def check_places(folder: RunFolder, names: Iterable[str]) -> None:
+    """Raise InputError if a folder has the name of one of these files, or of those of all runs."""
+    for name in (CONFIG, TRIALS, *names, MANIFEST, STATUS):
+        place = folder.path / name
+        require(not place.is_dir() or place.is_symlink(), place, "a folder", "no folder there")
+
+
 def finish(folder: RunFolder, manifest: Manifest, status: Status) -> None:
     """Put a run that is whole in the place of what was there before.
 
@@ -82,9 +90,7 @@ def finish(folder: RunFolder, manifest: Manifest, status: Status) -> None:
     InputError
         If something cannot be written, or a folder has the name of a file.
     """
-    for name in (*manifest.files, MANIFEST, STATUS):
-        place = folder.path / name
-        require(not place.is_dir() or place.is_symlink(), place, "a folder", "no folder there")
+    check_places(folder, manifest.files)
     with TURN:
         replace(status, manifest=manifest.write(folder.work)).write(folder.work)
         publish(folder.work.path / STATUS, folder.path / STATUS)

@@ -152,10 +152,11 @@ def test_folders_and_locks_that_are_links_are_refused_or_go(tmp_path):
     assert (other / "manifest.json").read_text() == "{}"
 
 
-def test_a_folder_in_the_place_of_a_file_is_told_before_anything_is_replaced(run):
+def test_a_folder_in_the_place_of_a_file_is_told_before_a_trial_is_done(run, monkeypatch):
     folder = run_folder(run).path
     (folder / "run.mcap").unlink()
     (folder / "run.mcap").mkdir()
+    monkeypatch.setattr("gapath.tasks.plan.plan_trials", None)
     with pytest.raises(InputError, match=r"run\.mcap: got a folder"):
         execute(run, "test")
     assert Status.read(folder).state == "failed"
