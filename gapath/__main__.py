@@ -5,7 +5,7 @@ What they import takes a second, so each imports its own only then.
 
 import gc
 
-from gapath.commands.signals import watch
+from gapath.commands.signals import watched
 
 
 def main() -> None:
@@ -14,37 +14,37 @@ def main() -> None:
     Modules are some hundred thousand objects, none of them garbage. To look for garbage among
     them again and again takes an eighth of a short command's time.
     """
-    watch("gapath")
-    gc.disable()
-    from gapath.commands.run import main as command
+    with watched("gapath"):
+        gc.disable()
+        from gapath.commands.run import main as command
 
-    gc.freeze()
-    gc.enable()
-    command()
+        gc.freeze()
+        gc.enable()
+        command()
 
 
 def log() -> int:
     """Run the command `gapath.commands.log.main`."""
-    watch("gapath-log")
-    from gapath.commands.log import main as command
+    with watched("gapath-log"):
+        from gapath.commands.log import main as command
 
-    return command()
+        return command()
 
 
 def report() -> int:
     """Run the command `gapath.pipelines.report.cli.main`."""
-    watch("gapath-report")
-    from gapath.pipelines.report.cli import main as command
+    with watched("gapath-report"):
+        from gapath.pipelines.report.cli import main as command
 
-    return command()
+        return command()
 
 
 def genotype() -> int:
     """Run the command `gapath.commands.genotype.main`."""
-    watch("gapath-genotype")
-    from gapath.commands.genotype import main as command
+    with watched("gapath-genotype"):
+        from gapath.commands.genotype import main as command
 
-    return command()
+        return command()
 
 
 if __name__ == "__main__":

@@ -2,10 +2,12 @@
 
 import argparse
 import os
+import signal
 import subprocess
 import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -15,13 +17,16 @@ from gapath.errors import FAULTS, InputError, printable, require
 from gapath.events import Event, Finished, RunFinished, RunStarted
 from gapath.recorders import mcap
 from gapath.recorders.mcap import FILE
-from gapath.store.durable import part_of, scratch
+from gapath.store.durable import LAST, part_of, scratch
 from gapath.store.records import MANIFEST, read_record
 from gapath.store.runfolder import WORK
 from gapath.store.settings import text_of
 from gapath.task import find_task
 
 _LOCAL = "127.0.0.1"  # a viewer also serves; never to other machines
+
+_VIEWER = "import sys; from rerun_cli.__main__ import main; sys.exit(main())"
+"""Run as a module it would drop the viewer's exit code."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -296,9 +301,7 @@ def _view(arguments: argparse.Namespace) -> int:
     with scratch() as folder:
         if path.suffix != ".rrd":
             path = folder / _record(path, [0], folder, _limits(arguments))[0]
-        code = subprocess.run(
-            [sys.executable, "-m", "rerun_cli", "--bind", _LOCAL, str(path)], check=False
-        ).returncode
+        code = _shown(path)
     if code:
         print(
             f"gapath-log: the Rerun viewer ended with code {code}; it needs a display. "
@@ -307,6 +310,22 @@ def _view(arguments: argparse.Namespace) -> int:
             file=sys.stderr,
         )
     return 1 if code else 0
+
+
+def _shown(recording: Path) -> int:
+    """Open a recording in the viewer, which ends with this command, and give its exit code."""
+    command = [sys.executable, "-c", _VIEWER, "--bind", _LOCAL, str(recording)]
+    with subprocess.Popen(command, process_group=0) as viewer:
+
+        def end() -> None:
+            with suppress(ProcessLookupError):
+                os.killpg(viewer.pid, signal.SIGTERM)  # also what that has started
+
+        LAST.append(end)
+        try:
+            return viewer.wait()
+        finally:
+            LAST.remove(end)
 
 
 if __name__ == "__main__":

@@ -12,7 +12,8 @@ import select
 import signal
 import sys
 import threading
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 
 PATIENCE = 0.4
 """Seconds for last words, should a disk be slow; a second signal does not wait for them."""
@@ -20,10 +21,12 @@ PATIENCE = 0.4
 _WORDS = {int(signal.SIGINT): "interrupted", int(signal.SIGTERM): "terminated"}
 
 
-def watch(command: str) -> None:
-    """End this process on either signal from now on, with exit code 128 + its number.
+@contextmanager
+def watched(command: str) -> Iterator[None]:
+    """End this process on either signal meanwhile, with exit code 128 + its number.
 
-    One that was ignored, as Control-C is of jobs in the background of a script, still is.
+    One that was ignored, as Control-C is of jobs in the background of a script, still is. One that
+    comes later, while Python ends, comes too late: all is done and said.
 
     Parameters
     ----------
@@ -33,15 +36,23 @@ def watch(command: str) -> None:
     read, write = os.pipe()
     os.set_blocking(write, False)
     signal.set_wakeup_fd(write, warn_on_full_buffer=False)
-    threading.Thread(target=_wait, args=(command, read), daemon=True).start()
+    ending = threading.Lock()  # the command, or a signal: who has it keeps it
+    threading.Thread(target=_wait, args=(command, read, ending), daemon=True).start()
     for number in _WORDS:
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, lambda *given: None)  # Python writes into the pipe
+    try:
+        yield
+    finally:
+        ending.acquire()  # else a signal ends the process
+        for number in _WORDS:
+            signal.signal(number, signal.SIG_IGN)  # Python takes back all other handlers
 
 
-def _wait(command: str, read: int) -> None:
+def _wait(command: str, read: int, ending: threading.Lock) -> None:
     while (number := os.read(read, 1)[0]) not in _WORDS:
         pass
+    ending.acquire()
     try:
         threading.Thread(target=_end, args=(command, number), daemon=True).start()
         select.select([read], [], [], PATIENCE)

@@ -4,7 +4,6 @@ import dataclasses
 import subprocess
 import sys
 from dataclasses import replace
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -291,18 +290,13 @@ def test_rerun_makes_recordings(log, capsys, tmp_path):
 
 
 @pytest.mark.parametrize("code", [0, 1])
-def test_view_starts_the_viewer_on_this_machine_only(code, log, capsys, monkeypatch):
-    started = []
-
-    def viewer(command, check):
-        started.append((command, Path(command[-1]).read_bytes()[:3]))
-        return SimpleNamespace(returncode=code)
-
-    monkeypatch.setattr(subprocess, "run", viewer)
+def test_view_starts_the_viewer_on_this_machine_only(code, log, capsys, monkeypatch, tmp_path):
+    viewer, told = tmp_path / "viewer", tmp_path / "told"
+    viewer.write_text(f'#!/bin/sh\n(echo $1 $2; head -c 3 "$3") > {told}\nexit {code}\n')
+    viewer.chmod(0o755)
+    monkeypatch.setenv("RERUN_CLI_PATH", str(viewer))
     result, _, err = call(capsys, "view", log)
-    (command, magic), *_ = started
-    assert command[1:-1] == ["-m", "rerun_cli", "--bind", "127.0.0.1"]
-    assert magic == b"RRF"
+    assert told.read_bytes() == b"--bind 127.0.0.1\nRRF"
     assert result == code
     assert ("needs a display" in err) == bool(code)
 

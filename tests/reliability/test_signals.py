@@ -71,10 +71,10 @@ class Forked:
         os.kill(self.pid, number)
 
 
-def started(script, words, errors, **environment):
+def started(script, words, errors, before="pass", **environment):
     """A command of the project in a new process, as its script starts it."""
     module, name = SCRIPTS[script].split(":")
-    code = f"from {module} import {name} as command; raise SystemExit(command())"
+    code = f"{before}; from {module} import {name} as command; raise SystemExit(command())"
     with errors.open("wb") as file:
         return subprocess.Popen(
             [sys.executable, "-c", code, *words], stdout=subprocess.DEVNULL, stderr=file,
@@ -186,6 +186,40 @@ def test_a_sweep_goes_on_where_it_ended(gapath, tmp_path):
 
 
 JOBS = 8
+
+
+def test_a_signal_comes_too_late_once_all_is_done(tmp_path):
+    """While Python ends: neither the line nor another exit code."""
+    errors = tmp_path / "errors"
+    late = (
+        "import atexit, os, time;"
+        f"atexit.register(lambda: [(os.kill(os.getpid(), n), time.sleep(0.1)) for n in {LATE}])"
+    )
+    process = started("gapath-genotype", ["--version"], errors, late)
+    wait(process, lambda: False)
+    assert (process.returncode, errors.read_text()) == (0, "")
+
+
+LATE = (int(INT), int(TERM))
+
+
+def test_the_viewer_ends_with_the_command(tmp_path):
+    """Which another program starts: it is none of the command's own children."""
+    viewer, told, file = (tmp_path / name for name in ("viewer", "told", "x.rrd"))
+    viewer.write_text(f"#!/bin/sh\necho $$ > {told}\nexec sleep 100\n")
+    viewer.chmod(0o755)
+    file.touch()
+    path = str(viewer)
+    process = started("gapath-log", ["view", str(file)], tmp_path / "errors", RERUN_CLI_PATH=path)
+    wait(process, lambda: told.exists() and told.read_text())
+    command = Path(f"/proc/{int(told.read_text())}/cmdline")
+    assert command.read_bytes()
+    assert ended(process, TERM) < SECONDS
+    end = time.monotonic() + SECONDS
+    with suppress(FileNotFoundError):
+        while command.read_bytes():  # nothing, once nobody but its parent knows of it
+            assert time.monotonic() < end
+            time.sleep(0.01)
 
 
 @pytest.mark.parametrize(
