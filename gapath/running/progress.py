@@ -88,8 +88,18 @@ class _Chain:
         return self._sum.hexdigest()[:16].encode()
 
 
-def _head(folder: RunFolder, run: Run) -> list[object]:
-    return [folder.path.parent.name, versions(), [*columns(run.task.row)]]
+def _head(folder: RunFolder, run: Run) -> dict[str, object]:
+    """Give the first line: what the run is, and whether all of its trials are done anew."""
+    key, names = folder.path.parent.name, [*columns(run.task.row)]
+    return {"key": key, "versions": versions(), "columns": names, "force": run.force}
+
+
+def _may_take_up(content: object, head: dict[str, object]) -> bool:
+    """Tell whether a run with this first line may go on from one with that.
+
+    Who asks for all to be done anew gets what was done since that was asked, not from before.
+    """
+    return content in (head, head | {"force": True})
 
 
 @dataclass(frozen=True)
@@ -200,7 +210,7 @@ def _journaled(folder: RunFolder, run: Run) -> Iterator[Done]:
                 return
             content = json.loads(text)
             if head:
-                if content != _head(folder, run):
+                if not _may_take_up(content, _head(folder, run)):
                     return
                 head = False
                 continue

@@ -176,6 +176,40 @@ def test_a_run_that_is_cut_short_time_and_again_never_goes_back(made, done, monk
     assert numbers == [6, 7] and outcome(run) == outcome(run_in("plain"))
 
 
+@pytest.mark.parametrize("whole_before", [False, True])
+def test_force_takes_up_only_what_force_has_done(whole_before, made, done, monkeypatch):
+    run = made(*CASES["rows"])("cut")
+    forced, numbers = replace(run, force=True), done(PlanTask)
+
+    def firsts(each, after):
+        numbers.clear()
+        cut_short(each, monkeypatch, after, "interrupt")
+        return numbers[0]
+
+    if whole_before:
+        execute(run, "test", progress=False)
+    else:
+        assert (firsts(run, 4), firsts(forced, 2)) == (0, 0)
+    assert (firsts(forced, 3), firsts(forced, 5)) == (0 if whole_before else 1, 2)
+    numbers.clear()
+    state = execute(run, "test", progress=False).state
+    assert (state, numbers) == (("skipped", []) if whole_before else ("done", [4, 5, 6, 7]))
+    numbers.clear()
+    execute(forced, "test", progress=False)
+    assert numbers == ([4, 5, 6, 7] if whole_before else [*range(8)])
+    assert outcome(run)
+
+
+def test_with_recordings_alone_all_is_done_anew(made, done, monkeypatch):
+    run_in = made(*CASES["recordings"], "recorder=rerun")
+    execute(run_in("plain"), "test", progress=False)
+    run, numbers = run_in("cut"), done(PlanTask)
+    assert cut_short(run, monkeypatch, 3, "interrupt") == 0
+    numbers.clear()
+    execute(run, "test", progress=False)
+    assert numbers == [0, 1, 2, 3] and outcome(run) == outcome(run_in("plain"))
+
+
 def changed(data):
     """A file with a bit flipped here and there, cut, longer, or with a line doubled."""
     for place in range(3, len(data), max(len(data) // 20, 1)):
