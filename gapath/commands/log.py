@@ -12,8 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import gapath
-from gapath.discovery import component_of
-from gapath.errors import FAULTS, InputError, printable, require
+from gapath.errors import InputError, printable, require
 from gapath.events import Event, Finished, RunFinished, RunStarted
 from gapath.recorders import mcap
 from gapath.recorders.mcap import FILE
@@ -219,52 +218,21 @@ def _verified(path: Path, arguments: argparse.Namespace) -> int:
 
 
 def _compared(path: Path, arguments: argparse.Namespace) -> tuple[int, str]:
-    from gapath.running import again as running  # compiles kernels: only where it is needed
+    from gapath.running.verify import made_with, verify  # compiles: only where it is needed
 
-    remarks: list[str] = []
-
-    def again(logged: RunStarted) -> Iterator[Event]:
-        try:
-            made = running.made_again(logged, arguments.kernels)
-            remarks.extend(made.remarks)
-            work = running.work(made)
-            few = arguments.yes or work <= running.MOST_WORK
-            much = f"a run of {logged.trials} trials, up to {work:.1e} individuals and fields"
-            require(few, "work", much, f"at most {running.MOST_WORK:.0e}, or --yes to do it")
-            yield from running.events_again(made)
-        except InputError as error:
-            raise InputError(f"{path}: {error.where}", error.value, error.expected) from error
-        except FAULTS as error:  # of a component whose settings are anybody's
-            what = f"{component_of(error)}: {type(error).__name__} {error}"
-            raise InputError(path, what, "a run that can be done again") from error
-
-    found = mcap.compare(path, again, _limits(arguments))
+    found, others, remarks = verify(path, _limits(arguments), arguments.kernels, arguments.yes)
     count = f"{found.messages} messages"
     if found.difference:
         return 1, f"differs after {count} that are equal: {found.difference}"
-    others = _other_versions(found)
     if found.byte is not None and not others:
         return 1, f"differs from byte {found.byte} on, though all of its {count} are equal"
     level = "byte for byte" if found.byte is None else "every message"
-    told = "; ".join([f"{level}, {count}", *others, *remarks])
+    told = "; ".join(filter(None, [f"{level}, {count}", made_with(others), *remarks]))
     if found.ended and not found.lost.messages:
         return 0, f"reproduced, {told}"
     until = "in its first trial" if found.trial is None else f"after trial {found.trial}"
     state = "saved in part" if found.ended else f"interrupted {until}"
     return 3, f"{state}, equal so far, {told}{_lacking(found.lost)}"
-
-
-def _other_versions(found: mcap.Comparison) -> list[str]:
-    """Say with which versions a log was made, if with others than there are."""
-    from gapath.store.keys import versions
-
-    now, then = versions(), found.run.versions
-    names = [name for name in {**then, **now} if then.get(name) != now.get(name)]
-    told = [f"{name} {then[name]} ({now.get(name, 'none')} here)" for name in names if name in then]
-    told += [f"unknown {name}" for name in names if name not in then]
-    if found.version != mcap.LOG_VERSION:
-        told.insert(0, f"log version {found.version} ({mcap.LOG_VERSION} here)")
-    return [f"made with {', '.join(told)}"] if told else []
 
 
 def _rerun(arguments: argparse.Namespace) -> int:
