@@ -136,7 +136,7 @@ class Manifest:
         return hashlib.sha256(data).hexdigest()
 
     @classmethod
-    def read(cls, folder: Path, sha256: str = "") -> "Manifest":
+    def read(cls, folder: Path, sha256: str = "", name: str = MANIFEST) -> "Manifest":
         """Read a folder's manifest.
 
         Parameters
@@ -145,6 +145,8 @@ class Manifest:
             A run folder.
         sha256 : str
             What its status says of it.
+        name : str
+            The file's name.
 
         Returns
         -------
@@ -157,7 +159,7 @@ class Manifest:
             If it cannot be read, is another, or something is missing, of another type or out of
             range.
         """
-        data = contents(folder, MANIFEST)
+        data = contents(folder, name)
         same = sha256 in ("", hashlib.sha256(data).hexdigest())
         expected = f"the one of which {STATUS} speaks; the command that made it mends it"
         require(same, MANIFEST, "another manifest", expected)

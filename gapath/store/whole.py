@@ -5,20 +5,23 @@ settings, trials, what recorders made, the manifest, which has the hashes of the
 which has that of the manifest. Then
 
 1. the status takes its place in the run's folder. From this one step on the new run counts;
-2. the files, then the manifest take their places, and what only the run before had goes;
-3. the folder `WORK` goes, and that of a run which was cut short and taken up, `BEFORE`.
+2. the files take their places, what only the run before had goes, and the manifest lies beside
+   its place;
+3. the folder `WORK` goes, and that of a run which was cut short and taken up, `BEFORE`;
+4. the manifest takes its place: now nothing is left to be done.
 
 Before step 1 a run that was there before is untouched. Whoever is killed after it leaves a status
-that speaks of a manifest that still lies in `WORK`: whoever takes the lock next finishes steps 2
-and 3 (`settle`), which may be done any number of times. Nothing else in the folder is touched.
+that speaks of a manifest that is not in its place: whoever takes the lock next finishes the other
+steps (`settle`), which may be done any number of times. Nothing else in the folder is touched.
 """
 
 import os
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import replace
 
 from gapath.errors import InputError, require
-from gapath.store.durable import named, publish, sync_folder
+from gapath.store.durable import named, part_of, publish, sync_folder
 from gapath.store.inputs import unchanged
 from gapath.store.records import CONFIG, MANIFEST, TRIALS, FileEntry, Manifest
 from gapath.store.runfolder import RunFolder
@@ -110,7 +113,7 @@ def settle(folder: RunFolder) -> None:
     folder : RunFolder
         The folder, which is held.
     """
-    manifest, work = _finished(folder), folder.work
+    manifest, work, last = _finished(folder), folder.work, part_of(folder.path / MANIFEST)
     if manifest is None:
         return
     with named(folder.path):
@@ -119,9 +122,11 @@ def settle(folder: RunFolder) -> None:
                 (work.path / name).replace(folder.path / name)
         for name in files_of(folder).keys() - manifest.files.keys():
             (folder.path / name).unlink(missing_ok=True)
+        if os.path.lexists(work.path / MANIFEST):
+            (work.path / MANIFEST).replace(last)
         sync_folder(folder.path)
-    publish(work.path / MANIFEST, folder.path / MANIFEST)
     folder.clear()
+    publish(last, folder.path / MANIFEST)
 
 
 def _finished(folder: RunFolder) -> Manifest | None:
@@ -129,7 +134,7 @@ def _finished(folder: RunFolder) -> Manifest | None:
     status = Status.read(folder.path)
     if not status.manifest or status.state not in WHOLE or work.is_symlink():
         return None
-    try:
-        return Manifest.read(work, status.manifest)
-    except InputError:
-        return None
+    for path in (work / MANIFEST, part_of(folder.path / MANIFEST)):
+        with suppress(InputError):
+            return Manifest.read(path.parent, status.manifest, path.name)
+    return None

@@ -12,7 +12,7 @@ from small_run import calls, small_run
 from gapath.commands import run as cli
 from gapath.errors import InputError
 from gapath.running.experiment import execute, run_folder
-from gapath.store.runfolder import WORK
+from gapath.store.runfolder import BEFORE, WORK
 from gapath.store.status import Status
 from gapath.store.whole import is_whole
 
@@ -52,6 +52,8 @@ class Case:
         """The same command without force; the run before it, or all of the new one."""
         state = execute(self.plain, "test").state
         now = self.kept()
+        left = [name for name in (WORK, BEFORE) if (self.folder.path / name).exists()]
+        assert not left or now == self.before  # then it is the new run's, which may go on
         if self.again:
             assert state == "skipped"
             assert now == self.before or (now[0] == self.before[0] and now[1] != self.before[1])
