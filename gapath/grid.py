@@ -8,7 +8,7 @@ import hashlib
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -107,9 +107,12 @@ class GridMap(Shown):
         try:
             given = np.asarray(self.weights)
             require(given.dtype.kind in "biuf", where, f"an array of {given.dtype}", "real numbers")
-            flags, real = given.flags, given.dtype == np.float64
-            final = real and flags.c_contiguous and flags.owndata and not flags.writeable
-            weights = given if final else np.array(given, dtype=np.float64, order="C")
+            base: Any = given
+            while isinstance(base, np.ndarray) and not base.flags.writeable:
+                base = base.base
+            final = base is None or isinstance(base, bytes)
+            kept = final and given.dtype == np.float64 and given.flags.c_contiguous
+            weights = given if kept else np.array(given, dtype=np.float64, order="C")
         except ValueError as error:  # rows of different lengths
             if isinstance(error, InputError):
                 raise

@@ -183,7 +183,8 @@ def occupancy_grid_cdr(grid: GridMap, percent: NDArray[np.int8]) -> bytes:
     info = TYPES.types["nav_msgs/msg/MapMetaData"](
         _stamp(0), grid.resolution, grid.cols, grid.rows, origin
     )
-    return record("/map", 0, header, info, np.flipud(percent).reshape(-1)).data
+    head = record("/map", 0, header, info, np.empty(0, np.int8)).data[: -COUNT.size]
+    return b"".join((head, COUNT.pack(percent.size), np.ascontiguousarray(percent[::-1]).data))
 
 
 def stamp_again(message: bytearray, step: int) -> None:

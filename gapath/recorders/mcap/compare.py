@@ -9,11 +9,12 @@ from pathlib import Path
 from typing import IO, Any, NamedTuple
 
 import numpy as np
-from mcap.records import Attachment, Channel, Message, Metadata, Schema
+from mcap.records import Channel, Message, Metadata, Schema
 
 from gapath.errors import InputError
 from gapath.events import Event, RunStarted
 from gapath.recorders.mcap.description import LOST, Lost
+from gapath.recorders.mcap.file.stored import Bytes, Stored, blocks
 from gapath.recorders.mcap.file.walk import Entry, Limits, entries, opened
 from gapath.recorders.mcap.format import NS_PER_STEP, TOPICS, TYPES
 from gapath.recorders.mcap.log import LogWriter
@@ -60,15 +61,13 @@ class _Twin:
         self._other, self._place = other, 0
         self.byte: int | None = None
 
-    def write(self, data: bytes) -> None:
-        if self.byte is None:
-            there = self._other.read(len(data))
-            if there != data:
-                self.byte = self._place + _first(there, data)
-        self._place += len(data)
-
-    def tell(self) -> int:
-        return self._place
+    def write(self, data: Bytes) -> None:
+        for block in blocks(data):
+            if self.byte is None:
+                there = self._other.read(len(block))
+                if there != block:
+                    self.byte = self._place + _first(there, block)
+                self._place += len(block)
 
     def flush(self) -> None:
         pass
@@ -139,7 +138,7 @@ class _Log:
         with refusing(path, WHOLE):
             while run is None:
                 entry = next(rest, None)
-                if not isinstance(entry, Metadata | Attachment):
+                if not isinstance(entry, Metadata | Stored):
                     begins = _named(entry, {})
                     raise InputError("metadata", f"{begins} before them", "a run's description")
                 begun.append(entry)
@@ -201,7 +200,7 @@ def difference(old: Entry | None, new: Entry | None, topics: Mapping[int, str]) 
 
     Parameters
     ----------
-    old, new : Metadata, Attachment, Schema, Channel, Message or None
+    old, new : Metadata, Stored, Schema, Channel, Message or None
         What the log has, and what it would be; None for nothing.
     topics : mapping of int to str
         The channels' topics.
@@ -217,11 +216,12 @@ def difference(old: Entry | None, new: Entry | None, topics: Mapping[int, str]) 
         return _both("", where, _named(new, topics))
     if isinstance(old, Metadata) and isinstance(new, Metadata):
         return _entry(old, new, where)
-    for name in (each.name for each in dataclasses.fields(old) if each.name != "data"):
+    names = [each.name for each in dataclasses.fields(old) if each.name not in ("data", "parts")]
+    for name in names:
         if found := unequal(getattr(old, name), getattr(new, name), f"{where}, {name}"):
             return found
     found = unequal(_decoded(old, topics), _decoded(new, topics), where)
-    return found or unequal(getattr(old, "data", b""), getattr(new, "data", b""), where)
+    return found or unequal(_data(old), _data(new), where)
 
 
 def _entry(old: Metadata, new: Metadata, where: str) -> str:
@@ -244,7 +244,9 @@ def _named(entry: Entry | None, topics: Mapping[int, str]) -> str:
         case Message():
             topic = topics.get(entry.channel_id, f"channel {entry.channel_id}")
             return f"message {entry.sequence}, step {entry.log_time / NS_PER_STEP:g}, {topic}"
-        case Metadata() | Attachment() | Schema():
+        case Stored():
+            return f"attachment {entry.name}"
+        case Metadata() | Schema():
             return f"{type(entry).__name__.lower()} {entry.name}"
         case Channel():
             return f"channel {entry.topic}"
@@ -256,11 +258,17 @@ def _decoded(entry: Any, topics: Mapping[int, str]) -> Any:
     try:
         if isinstance(entry, Message):
             return TYPES.deserialize_cdr(entry.data, TOPICS[topics[entry.channel_id]])
-        if isinstance(entry, Attachment):
-            return np.load(io.BytesIO(entry.data), allow_pickle=False)
+        if isinstance(entry, Stored):
+            return np.load(io.BytesIO(_data(entry)), allow_pickle=False)
         return entry.data.decode().split("\n")
     except Exception:  # a log may come from anywhere
-        return entry.data
+        return _data(entry)
+
+
+def _data(entry: Any) -> bytes:
+    """Give an entry's bytes; a channel has none."""
+    whole = b"".join(entry.blocks()) if isinstance(entry, Stored) else getattr(entry, "data", b"")
+    return bytes(whole)
 
 
 def unequal(old: Any, new: Any, where: str) -> str:

@@ -8,7 +8,7 @@ import io
 import json
 import math
 from bisect import bisect_right
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Self
@@ -20,6 +20,7 @@ from gapath.errors import InputError, require
 from gapath.events import RunStarted
 from gapath.grid import Field, GridMap
 from gapath.problem import CornerCutting, Problem
+from gapath.recorders.mcap.file.stored import Stored
 from gapath.scenario.listed import Queries
 from gapath.store.settings import of_text, text_of
 
@@ -124,14 +125,14 @@ def metadata(run: RunStarted, version: str = LOG_VERSION) -> dict[str, str]:
         "maps": json.dumps(list(problem.maps)),
         "settings": text_of(run.settings),
     }
-    for name, grid in _all_maps(problem).items():
+    for name, grid in _all_maps(problem):
         text |= _map_text(name, grid)
     text |= {_VERSION_OF + name: version for name, version in run.versions.items()}
     return text | {"sha256": _digest(text, attachments(run))}
 
 
-def _all_maps(problem: Problem) -> dict[str, GridMap]:
-    return {_MAP: problem.map, **problem.maps}
+def _all_maps(problem: Problem) -> list[tuple[str, GridMap]]:
+    return [(_MAP, problem.map), *problem.maps.items()]
 
 
 def _map_text(name: str, grid: GridMap) -> dict[str, str]:
@@ -147,13 +148,12 @@ def _map_text(name: str, grid: GridMap) -> dict[str, str]:
     }
 
 
-def attachments(run: RunStarted) -> dict[str, bytes]:
-    """Give a run's arrays as ``.npy`` files, by name."""
-    maps = _all_maps(run.problem).items()
-    weights = {name + _NPY: _npy(grid.weights, "<f8") for name, grid in maps}
+def attachments(run: RunStarted) -> list[Stored]:
+    """Give a run's arrays as ``.npy`` files."""
+    weights = [_npy(name + _NPY, grid.weights, "<f8") for name, grid in _all_maps(run.problem)]
     queries = run.problem.queries
-    listed = {} if queries is None else {QUERIES: _npy(_in_rows(queries), "<f8")}
-    return weights | listed | {OPTIMAL_PATH: _npy(run.optimal_path, "<i4")}
+    listed = [] if queries is None else [_npy(QUERIES, _in_rows(queries), "<f8")]
+    return [*weights, *listed, _npy(OPTIMAL_PATH, run.optimal_path, "<i4")]
 
 
 def _in_rows(queries: Queries) -> NDArray[np.float64]:
@@ -166,15 +166,15 @@ def _queries(rows: NDArray[np.float64]) -> Queries:
     return Queries(whole[:, 0], whole[:, 1], whole[:, 2:4], whole[:, 4:], rows[:, 6])
 
 
-def run_started(text: Mapping[str, str], files: Mapping[str, bytes]) -> RunStarted:
+def run_started(text: Mapping[str, str], files: Sequence[Stored]) -> RunStarted:
     """Put a run's first event together again.
 
     Parameters
     ----------
     text : dict of str to str
         As `metadata` made it.
-    files : dict of str to bytes
-        As `attachments` made it.
+    files : sequence of Stored
+        As `attachments` made them.
 
     Returns
     -------
@@ -206,7 +206,7 @@ def run_started(text: Mapping[str, str], files: Mapping[str, bytes]) -> RunStart
             told("target", _field),
             told("corner_cutting", CornerCutting.__getitem__),
             {name: _grid_map(name, told, arrays) for name in told("maps", _names)},
-            queries=_queries(arrays[QUERIES]) if QUERIES in files else None,
+            queries=_queries(arrays[QUERIES]) if QUERIES in arrays else None,
         ),
         seed=told("seed", int),
         trials=told("trials", int),
@@ -233,8 +233,11 @@ def _told(text: Mapping[str, str], name: str, read: Callable[[str], Any] = str) 
 class _Arrays:
     """The arrays that attachments hold, by name."""
 
-    def __init__(self, files: Mapping[str, bytes]) -> None:
-        self._files = files
+    def __init__(self, files: Iterable[Stored]) -> None:
+        self._files = {file.name: file for file in files}
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._files
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         try:
@@ -247,14 +250,17 @@ class _Arrays:
         return array
 
 
-def _array(file: bytes) -> NDArray[Any]:
-    """Read an ``.npy`` file, whose head says no more than there is."""
-    stream = io.BytesIO(file)
+def _array(file: Stored) -> NDArray[Any]:
+    """Read an ``.npy`` file, whose head says no more than there is; no byte of it is copied."""
+    (content,) = file.parts
+    stream = io.BytesIO(content[: 1 << 16])
     assert np.lib.format.read_magic(stream) == (1, 0)
     shape, by_columns, dtype = np.lib.format.read_array_header_1_0(stream)
-    size = dtype.itemsize * math.prod(shape)
-    assert not by_columns and not dtype.hasobject and size == len(file) - stream.tell()
-    return np.frombuffer(file, dtype, offset=stream.tell()).reshape(shape).copy()
+    begin = stream.tell()
+    assert not by_columns and not dtype.hasobject
+    assert dtype.itemsize * math.prod(shape) == file.size - begin
+    array = np.frombuffer(content, dtype, offset=begin).reshape(shape)
+    return array if array.flags.aligned else array.copy()
 
 
 _SHAPES = {OPTIMAL_PATH: (2, "i"), QUERIES: (7, "f")}
@@ -297,14 +303,17 @@ def _field(text: str) -> Field:
     return x, y
 
 
-def _npy(array: NDArray[np.generic], dtype: str) -> bytes:
-    file = io.BytesIO()
-    np.save(file, np.ascontiguousarray(array, dtype=dtype), allow_pickle=False)
-    return file.getvalue()
+def _npy(name: str, array: NDArray[np.generic], dtype: str) -> Stored:
+    """Store an array as NumPy would save it."""
+    array, head = np.ascontiguousarray(array, dtype=dtype), io.BytesIO()
+    np.lib.format.write_array_header_1_0(head, np.lib.format.header_data_from_array_1_0(array))
+    return Stored(name, (head.getvalue(), array.reshape(-1).view(np.uint8).data))
 
 
-def _digest(text: Mapping[str, str], files: Mapping[str, bytes]) -> str:
+def _digest(text: Mapping[str, str], files: Iterable[Stored]) -> str:
     sha = hashlib.sha256(json.dumps(text, sort_keys=True).encode())
-    for name in sorted(files):
-        sha.update(name.encode() + b"\0" + files[name])
+    for file in sorted(files, key=lambda file: file.name):
+        sha.update(file.name.encode() + b"\0")
+        for part in file.parts:
+            sha.update(part)
     return sha.hexdigest()

@@ -78,10 +78,9 @@ class DriveMessages:
         x, y = zip(run.problem.start, run.problem.target, strict=True)  # known from the start
         known[y, x] = per_cent(grid.table[y, x])
         self._nothing = occupancy_grid_cdr(grid, known)
-        self.begin()
+        self._begin()
 
-    def begin(self) -> None:
-        """Forget everything: another drive begins."""
+    def _begin(self) -> None:
         self._message = bytearray(self._nothing)
         size = self._grid.weights.size
         cells = np.frombuffer(self._message, np.int8, offset=len(self._message) - size)
@@ -91,7 +90,8 @@ class DriveMessages:
         self._mode = Mode.EXPLORE
 
     def started(self, event: DriveStarted) -> Iterator[Record]:
-        """Log what the robot can do."""
+        """Forget the drive before, and log what the robot can do."""
+        self._begin()
         able = (event.unknown_weight, event.sensor_range, event.step_limit)
         yield Record("/drive_start", event.step, ENCAPSULATION + _BEGIN.pack(event.trial, *able))
 

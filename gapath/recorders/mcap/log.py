@@ -7,26 +7,18 @@ import os
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO, Any
+from typing import IO
 
-from mcap.records import Attachment, Channel, Message, Metadata, Schema
-from mcap.writer import Writer
+from mcap.records import Channel, Message, Metadata, Schema
 
 from gapath.errors import InputError
 from gapath.events import Event, RunStarted
 from gapath.recorders.mcap import description
 from gapath.recorders.mcap.description import NOTHING
 from gapath.recorders.mcap.file.walk import Entry
-from gapath.recorders.mcap.format import (
-    LIBRARY,
-    MAX_CHUNK,
-    MAX_LOG,
-    NS_PER_STEP,
-    PROFILE,
-    TOPICS,
-    schema,
-)
-from gapath.recorders.mcap.messages import Messages
+from gapath.recorders.mcap.file.write import Target, Writer
+from gapath.recorders.mcap.format import MAX_CHUNK, MAX_LOG, NS_PER_STEP, TOPICS, schema
+from gapath.recorders.mcap.messages import Messages, count_first
 from gapath.recorders.mcap.reader import read_prefix
 from gapath.store.durable import new_file, part_of, publish
 
@@ -45,8 +37,8 @@ class LogWriter:
 
     Parameters
     ----------
-    file : binary file
-        Where to; it needs ``write``, ``tell`` and ``flush``.
+    file : Target
+        Where to.
     version : str
         What the log calls itself: another version only to write an older log again.
     lost : Lost
@@ -55,11 +47,13 @@ class LogWriter:
     """
 
     def __init__(
-        self, file: Any, version: str = description.LOG_VERSION, lost: description.Lost = NOTHING
+        self,
+        file: Target,
+        version: str = description.LOG_VERSION,
+        lost: description.Lost = NOTHING,
     ) -> None:
         self._version, self._lost, self.skipped = version, lost, 0
-        self._writer = Writer(file, chunk_size=2 * MAX_CHUNK, enable_data_crcs=True)
-        self._writer.start(profile=PROFILE, library=LIBRARY)
+        self._writer = Writer(file)
         self._channels: dict[str, int] = {}
         self._schemas: dict[str, int] = {}
         self._messages: Messages | None = None
@@ -75,7 +69,7 @@ class LogWriter:
 
         Yields
         ------
-        Metadata, Attachment, Schema, Channel or Message
+        Metadata, Stored, Schema, Channel or Message
             What has been written.
 
         Raises
@@ -108,14 +102,15 @@ class LogWriter:
     def begin(self, run: RunStarted) -> Iterator[Entry]:
         """Write the metadata and attachments that a run's first event comes to."""
         self._messages = Messages(run)
-        self._head = sum(1 for _ in self._messages.records(run))
+        self._head = count_first(run)
         told = {description.NAME: description.metadata(run, self._version)}
         for name, text in (told | self._lost.metadata).items():
-            self._writer.add_metadata(name, text)
-            yield Metadata(name, text)
-        for name, data in description.attachments(run).items():
-            self._writer.add_attachment(0, 0, name, _BYTES, data)
-            yield Attachment(0, 0, name, _BYTES, data)
+            entry = Metadata(name, text)
+            self._writer.metadata(entry)
+            yield entry
+        for stored in description.attachments(run):
+            self._writer.stored(stored)
+            yield stored
 
     def put(
         self, topic: str, time: int, data: bytes, published: int, sequence: int
@@ -126,19 +121,21 @@ class LogWriter:
         if topic not in self._channels:
             name = TOPICS[topic]
             if name not in self._schemas:
-                text = schema(topic)
-                number = self._schemas[name] = self._writer.register_schema(name, "ros2msg", text)
-                yield Schema(number, text, "ros2msg", name)
-            number = self._writer.register_channel(topic, "cdr", self._schemas[name])
-            self._channels[topic] = number
-            yield Channel(number, topic, "cdr", {}, self._schemas[name])
-        channel = self._channels[topic]
-        self._writer.add_message(channel, time, data, published, sequence)
+                self._schemas[name] = len(self._schemas) + 1
+                described = Schema(self._schemas[name], schema(topic), "ros2msg", name)
+                self._writer.schema(described)
+                yield described
+            self._channels[topic] = len(self._channels) + 1
+            channel = Channel(self._channels[topic], topic, "cdr", {}, self._schemas[name])
+            self._writer.channel(channel)
+            yield channel
+        message = Message(self._channels[topic], time, data, published, sequence)
+        self._writer.message(message)
         self._in_chunk += 1
         self._chunk_bytes += len(data) + _MESSAGE_HEAD
         if self._in_chunk >= CHUNK_MESSAGES or self._chunk_bytes >= CHUNK_BYTES:
             self.flush()
-        yield Message(channel, time, data, published, sequence)
+        yield message
 
     def _end_head(self) -> None:
         """End the first chunk: a killed run leaves something whole from its first moment on."""
@@ -154,9 +151,6 @@ class LogWriter:
     def finish(self) -> None:
         """Write the log's end."""
         self._writer.finish()
-
-
-_BYTES = "application/octet-stream"
 
 
 @dataclass

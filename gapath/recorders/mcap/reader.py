@@ -4,16 +4,17 @@ Whatever is wrong is one `InputError` that names the file.
 """
 
 import contextlib
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import IO, TypeVar
 
-from mcap.records import Attachment, Channel, Message, Metadata
+from mcap.records import Channel, Message, Metadata
 
 from gapath.errors import InputError, require
 from gapath.events import Event, RunStarted
 from gapath.recorders.mcap import description
+from gapath.recorders.mcap.file.stored import Stored
 from gapath.recorders.mcap.file.walk import LARGE, Limits, entries, opened
 from gapath.recorders.mcap.format import NS_PER_STEP
 from gapath.recorders.mcap.messages import event
@@ -38,14 +39,16 @@ class Head:
     def __init__(self) -> None:
         self.text: dict[str, str] = {}
         self.lost = description.NOTHING
-        self._files: dict[str, bytes] = {}
+        self._files: dict[str, Stored] = {}
 
-    def take(self, entry: Metadata | Attachment) -> RunStarted | None:
+    def take(self, entry: Metadata | Stored) -> RunStarted | None:
         """Take metadata or an attachment; the last of them makes the run's first event."""
-        if isinstance(entry, Attachment):
-            self._files[entry.name] = entry.data
-            last = entry.name == description.OPTIMAL_PATH
-            return description.run_started(self.text, self._files) if last else None
+        if isinstance(entry, Stored):
+            name, files = entry.name, self._files
+            require(name not in files, f"attachment {name}", "twice", "once")
+            files[name] = entry
+            last = name == description.OPTIMAL_PATH
+            return description.run_started(self.text, [*files.values()]) if last else None
         if entry.name == description.NAME:
             self.text = entry.metadata
         elif entry.name == description.LOST:
@@ -77,8 +80,7 @@ def read_events(path: str | Path, limits: Limits = LARGE) -> Iterator[Event]:
         off or damaged, has anything in it that gapath does not write, or exceeds the limits.
     """
     with suggesting(path, limits), refusing(path, WHOLE), opened(path) as file:
-        for _ in _events(file, limits, lambda topic: False):
-            pass
+        deque(_events(file, limits, lambda topic: False), maxlen=0)  # keeps no map meanwhile
         yield from _events(file, limits)
 
 
@@ -183,7 +185,7 @@ def _events(
                     yield found
         elif isinstance(entry, Channel):
             topics[entry.id] = entry.topic
-        elif isinstance(entry, Metadata | Attachment):
+        elif isinstance(entry, Metadata | Stored):
             run = head.take(entry)
             if run is not None:
                 started = True

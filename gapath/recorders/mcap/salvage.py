@@ -3,6 +3,7 @@
 import contextlib
 import os
 import struct
+from collections import deque
 from collections.abc import Iterator
 from pathlib import Path
 from typing import IO, NamedTuple
@@ -80,6 +81,16 @@ def salvage(path: str | Path, output: str | Path, limits: Limits = LARGE) -> Sav
     output = Path(output)
     require(output.parent.is_dir(), output, "no such folder", "a file in an existing folder")
     require(not output.exists(), output, "a file that exists", "a new name")
+    with scratch(output.parent) as folder:
+        whole = folder / FILE
+        saved = _saved(path, whole, limits)
+        deque(read_events(whole, limits), maxlen=0)
+        publish(whole, output)
+    return saved
+
+
+def _saved(path: str | Path, whole: Path, limits: Limits) -> Saved:
+    """Write what is whole; here, so that its map is gone when another reads it back."""
     with opened_regular(path) as file:
         with refusing(path, BEGUN):
             try:
@@ -88,21 +99,15 @@ def salvage(path: str | Path, output: str | Path, limits: Limits = LARGE) -> Sav
                 raise InputError("log", "nothing whole in it", BEGUN) from error
             lost, count = _lost(file, place, limits, run.trials)
             require(count > 0, "messages", "nothing whole in it", "at least a chunk that is")
-        with scratch(output.parent) as folder:
-            whole = folder / FILE
-            with whole.open("wb") as new:
-                writer = LogWriter(new, head.text["gapath_log_version"], lost)
-                for _ in writer.begin(run):
+        with whole.open("wb") as new:
+            writer = LogWriter(new, head.text["gapath_log_version"], lost)
+            deque(writer.begin(run), maxlen=0)
+            for topic, m in _messages(file, place, limits):
+                for _ in writer.put(topic, m.log_time, m.data, m.publish_time, m.sequence):
                     pass
-                for topic, m in _messages(file, place, limits):
-                    for _ in writer.put(topic, m.log_time, m.data, m.publish_time, m.sequence):
-                        pass
-                writer.finish()
-                new.flush()
-                os.fsync(new.fileno())
-            for _ in read_events(whole, limits):
-                pass
-            publish(whole, output)
+            writer.finish()
+            new.flush()
+            os.fsync(new.fileno())
     return Saved(count, lost)
 
 

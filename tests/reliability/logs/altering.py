@@ -16,6 +16,7 @@ from mcap.stream_reader import StreamReader, breakup_chunk
 from mcap.writer import Writer
 
 from gapath.recorders.mcap import description
+from gapath.recorders.mcap.file.stored import Stored
 from gapath.recorders.mcap.format import NS_PER_STEP, TOPICS, TYPES
 
 
@@ -44,7 +45,7 @@ def taken_apart(path):
 
 def put_together(parts, path, **options):
     """Write a log of any entries; sequence numbers stay, the metadata's digest is made anew."""
-    files = {e.name: e.data for e in parts.entries if isinstance(e, Attachment)}
+    files = {e.name: Stored(e.name, (e.data,)) for e in parts.entries if isinstance(e, Attachment)}
     with path.open("wb") as file:
         writer = Writer(file, **({"chunk_size": 1 << 28, "enable_data_crcs": True} | options))
         schemas, channels, count = {}, {}, 0
@@ -55,7 +56,7 @@ def put_together(parts, path, **options):
                 case Metadata():
                     text = dict(entry.metadata)
                     if text.pop("sha256", None):
-                        text["sha256"] = description._digest(text, files)
+                        text["sha256"] = description._digest(text, files.values())
                     writer.add_metadata(entry.name, text)
                 case Attachment():
                     times = entry.create_time, entry.log_time
@@ -122,7 +123,7 @@ def _of_entry(entry):
                 yield (
                     f"{entry.name} {what}",
                     (*named, "start", "target", "optimal"),
-                    [replace(entry, data=description._npy(array, array.dtype.str))],
+                    [replace(entry, data=npy(array))],
                 )
             extra = replace(entry, name="note.txt", data=b"by nobody")
             yield "another", ("note.txt",), [extra, entry]
@@ -186,6 +187,13 @@ def _of_text(text):
     if text.endswith('"') and len(text) > 2:
         yield "emptied", '""'
     yield "with a blank", text + " "
+
+
+def npy(array):
+    """Save an array as bytes."""
+    file = io.BytesIO()
+    np.save(file, array)
+    return file.getvalue()
 
 
 def _of_array(array):

@@ -6,18 +6,17 @@ Viewers that seek go by it, so a log is whole only if it is right, to the last b
 import struct
 import zlib
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
 from mcap.records import (
-    Attachment,
     AttachmentIndex,
     Channel,
     Chunk,
     ChunkIndex,
     Footer,
     McapRecord,
-    Message,
     MessageIndex,
     Metadata,
     MetadataIndex,
@@ -26,6 +25,8 @@ from mcap.records import (
     SummaryOffset,
 )
 from mcap.writer import MCAP0_MAGIC
+
+from gapath.recorders.mcap.file.stored import Stored
 
 MAGIC = MCAP0_MAGIC
 """What a file begins and ends with."""
@@ -37,6 +38,14 @@ def encoded(record: McapRecord) -> bytes:
     record.write(builder)
     data: bytes = builder.end()
     return data
+
+
+class Place(NamedTuple):
+    """Where in what its chunk inflates to a message begins, its channel and its log time."""
+
+    begin: int
+    channel: int
+    time: int
 
 
 class Summary:
@@ -77,16 +86,14 @@ class Summary:
         self._counts.metadata_count += 1
         self._add(Opcode.METADATA_INDEX, MetadataIndex(offset, length, record.name))
 
-    def attachment(self, offset: int, length: int, record: Attachment) -> None:
+    def attachment(self, offset: int, length: int, record: Stored) -> None:
         """Take an attachment that lies at an offset."""
         self._counts.attachment_count += 1
-        times, size = (record.log_time, record.create_time), len(record.data)
+        times, size = (record.log_time, record.create_time), record.size
         index = AttachmentIndex(offset, length, *times, size, record.name, record.media_type)
         self._add(Opcode.ATTACHMENT_INDEX, index)
 
-    def chunk(
-        self, offset: int, length: int, chunk: Chunk, places: list[tuple[int, Message]]
-    ) -> bytes:
+    def chunk(self, offset: int, length: int, chunk: Chunk, places: list[Place]) -> bytes:
         """Take a chunk that lies at an offset, and give what must follow it.
 
         Parameters
@@ -95,15 +102,15 @@ class Summary:
             Where in the file its record lies.
         chunk : Chunk
             The record.
-        places : list of (int, Message)
-            Its messages, and where each begins in what it inflates to.
+        places : list of Place
+            Its messages.
 
         Returns
         -------
         bytes
             The index of its messages.
         """
-        counts, times = self._counts, [message.log_time for _, message in places]
+        counts, times = self._counts, [place.time for place in places]
         if not counts.message_count:
             counts.message_start_time = times[0]
         counts.message_start_time = min(counts.message_start_time, *times)
@@ -111,10 +118,9 @@ class Summary:
         counts.message_count += len(places)
         counts.chunk_count += 1
         indexes: dict[int, MessageIndex] = {}
-        for place, message in places:
-            number = message.channel_id
+        for begin, number, time in places:
             index = indexes.setdefault(number, MessageIndex(number, []))
-            index.records.append((message.log_time, place))
+            index.records.append((time, begin))
         per_channel, offsets, follows = counts.channel_message_counts, {}, b""
         for number, index in indexes.items():
             per_channel[number] = per_channel.get(number, 0) + len(index.records)

@@ -17,13 +17,14 @@ from typing import IO, Any, NamedTuple, TypeAlias, TypeVar
 import zstandard
 from mcap.data_stream import ReadDataStream
 from mcap.opcode import Opcode
-from mcap.records import Attachment, Channel, Chunk, Header, McapRecord, Message, Metadata, Schema
+from mcap.records import Channel, Chunk, Header, McapRecord, Message, Metadata, Schema
 
 from gapath.errors import InputError, require
-from gapath.recorders.mcap.file.summary import MAGIC, Summary, encoded
+from gapath.recorders.mcap.file.stored import Stored
+from gapath.recorders.mcap.file.summary import MAGIC, Place, Summary, encoded
 from gapath.recorders.mcap.format import LIBRARY, MAX_CHUNK, MAX_LOG, PROFILE, TOPICS
 
-Entry: TypeAlias = Metadata | Attachment | Schema | Channel | Message
+Entry: TypeAlias = Metadata | Stored | Schema | Channel | Message
 """What a log says, wherever in the file it lies."""
 
 
@@ -60,6 +61,7 @@ _RATIO, _SMALL = 1000, 1 << 20  # no log of ours is packed so tightly, if it is 
 _HEAD = struct.Struct("<BQ")
 _CHUNK = struct.Struct("<QQQI")
 _MESSAGE = struct.Struct("<HIQQ")
+_TIMES, _SIZE, _LONG = struct.Struct("<QQ"), struct.Struct("<I"), struct.Struct("<Q")
 _ZSTD = struct.pack("<I", 4) + b"zstd"
 
 R = TypeVar("R", bound=McapRecord)
@@ -87,7 +89,7 @@ def entries(file: IO[bytes], limits: Limits = USUAL) -> Iterator[Entry]:
 
     Yields
     ------
-    Metadata, Attachment, Schema, Channel or Message
+    Metadata, Stored, Schema, Channel or Message
         As they lie in the file, each checked. After the last one the end of the file is checked,
         too.
 
@@ -129,16 +131,17 @@ class Walk:
         self.place += size
         return data
 
-    def _record(self) -> tuple[int, bytes]:
-        """Read a record: its kind, and all of its bytes."""
-        head = self._take(_HEAD.size)
-        opcode, length = _HEAD.unpack(head)
+    def _next(self) -> tuple[int, int]:
+        """Look at the next record: its kind, and how many bytes it has."""
+        opcode, length = _HEAD.unpack(self._take(_HEAD.size))
         most = {
             Opcode.CHUNK: self._limits.chunk,
             Opcode.ATTACHMENT: self._limits.attachments,
         }.get(opcode, _TEXT)
         require(length <= most, f"record {opcode}", f"{length} bytes", _at_most(most))
-        return opcode, head + self._take(length)
+        self.place -= _HEAD.size
+        self._file.seek(self.place)
+        return opcode, _HEAD.size + length
 
     def begin(self) -> None:
         """Read what a file begins with."""
@@ -146,8 +149,9 @@ class Walk:
         if magic != MAGIC:
             kind = Ended if MAGIC.startswith(magic) else InputError
             raise kind("first bytes", magic.hex(" "), f"those of MCAP, {MAGIC.hex(' ')}")
-        opcode, data = self._record()
+        opcode, length = self._next()
         require(opcode == Opcode.HEADER, "first record", f"of kind {opcode}", "a header")
+        data = self._take(length)
         header = read(Header, data)
         found, right = (header.profile, header.library), (PROFILE, LIBRARY)
         require(found == right, "profile, library", ", ".join(found), ", ".join(right))
@@ -156,8 +160,11 @@ class Walk:
     def step(self) -> Iterator[Entry] | None:
         """Read the next record up to the end of the data, and what belongs to it."""
         offset = self.place
-        opcode, data = self._record()
-        length = len(data)
+        opcode, length = self._next()
+        if opcode == Opcode.ATTACHMENT:
+            self._count()
+            return iter([self._stored(offset, length)])
+        data = self._take(length)
         if opcode == Opcode.DATA_END:
             good = data == _HEAD.pack(opcode, 4) + struct.pack("<I", self._crc)
             require(good, "end of data", data[9:].hex(" "), f"CRC {self._crc}")
@@ -167,36 +174,60 @@ class Walk:
             none = "none before the first message"
             require(self._few > 0, "metadata", none, "a run's description")
             return self._opened(offset, data)
+        self._count()
+        where, right = f"record at byte {offset}", "metadata, an attachment or a chunk"
+        require(opcode == Opcode.METADATA, where, f"one of kind {opcode}", right)
+        metadata = read(Metadata, data)
+        self._summary.metadata(offset, length, metadata)
+        return iter([metadata])
+
+    def _count(self) -> None:
         self._few += 1
         require(self._few <= _FEW, "metadata and attachments", self._few, f"at most {_FEW}")
-        if opcode == Opcode.METADATA:
-            metadata = read(Metadata, data)
-            self._summary.metadata(offset, length, metadata)
-            return iter([metadata])
-        where, right = f"record at byte {offset}", "metadata, an attachment or a chunk"
-        require(opcode == Opcode.ATTACHMENT, where, f"one of kind {opcode}", right)
+
+    def _stored(self, offset: int, length: int) -> Stored:
+        """Read an attachment; its content, which may be large, is copied nowhere."""
         self._attached += length
         most = self._limits.attachments
         require(self._attached <= most, "attachments", self._attached, _at_most(most))
-        attachment = read(Attachment, data)
-        self._summary.attachment(offset, length, attachment)
-        return iter([attachment])
+        end, pieces = offset + length, [self._take(_HEAD.size + 16)]
+
+        def sized(head: struct.Struct) -> bytes:
+            pieces.append(self._take(head.size))
+            (size,) = head.unpack(pieces[-1])
+            require(size <= end - self.place, "attachment", f"{size} bytes in it", f"{length}")
+            pieces.append(self._take(size))
+            return pieces[-1]
+
+        names = [str(sized(_SIZE), "utf-8") for _ in range(2)]
+        log_time, create_time = _TIMES.unpack_from(pieces[0], _HEAD.size)
+        stored = Stored(names[0], (sized(_LONG),), names[1], create_time, log_time)
+        pieces.append(self._take(_SIZE.size))
+        head, content, crc = stored.record()
+        good = (b"".join(pieces[:-2]), pieces[-2:]) == (head, [content, crc]) and self.place == end
+        require(
+            good, f"attachment {stored.name}", "a record with more in it", "as gapath writes it"
+        )
+        for piece in pieces:
+            self._crc = zlib.crc32(piece, self._crc)
+        self._summary.attachment(offset, length, stored)
+        return stored
 
     def _opened(self, offset: int, data: bytes) -> Iterator[Entry]:
         chunk = chunk_of(data, self._limits)
         self._inflated += chunk.uncompressed_size
         most = self._limits.log
         require(self._inflated <= most, "inflated size", self._inflated, _at_most(most))
-        places: list[tuple[int, Message]] = []
+        places: list[Place] = []
         for place, entry in self._inside.entries(inflated(chunk)):
             if isinstance(entry, Message):
-                places.append((place, entry))
+                places.append(Place(place, entry.channel_id, entry.log_time))
             elif isinstance(entry, Schema):
                 self._summary.schema(entry)
             else:
                 self._summary.channel(entry)
             yield entry
-        times = [message.log_time for _, message in places]
+        times = [place.time for place in places]
         require(bool(times), f"chunk at byte {offset}", "no messages", "some")
         found, right = (chunk.message_start_time, chunk.message_end_time), (min(times), max(times))
         require(found == right, f"times of the chunk at byte {offset}", found, str(right))
@@ -281,7 +312,7 @@ def chunk_of(data: bytes, limits: Limits) -> Chunk:
     require(kind == _ZSTD, "compression", kind[4:], "zstd")
     begin += len(_ZSTD)
     (length,) = struct.unpack_from("<Q", data, begin)
-    packed = data[begin + 8 :]
+    packed = memoryview(data)[begin + 8 :]
     require(length == len(packed), "chunk", f"{length} bytes", f"{len(packed)}")
     most = min(limits.chunk, max(_SMALL, _RATIO * length))
     require(size <= most, "inflated size", f"{size} bytes in a chunk", _at_most(most))
