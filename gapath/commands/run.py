@@ -21,6 +21,7 @@ from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
 
 import gapath
+from gapath.commands.asker import asker, asker_of_job, begin_sweep, edited_meanwhile
 from gapath.commands.refusal import (
     BAD_CONFIGURATION,
     Bounded,
@@ -85,6 +86,7 @@ class SweepCheck(Callback):  # type: ignore[misc]
         except FAULTS as error:
             sys.exit(refuse(error, words, sweep=True))
         warn(told(works))
+        begin_sweep(len(works))
         # Hydra would compose every job twice more: to see whether it can be composed, and to do it.
         BasicSweeper.validate_batch_is_legal = lambda self, batch: None
         loader.load_sweep_config = lambda config, words: (
@@ -111,9 +113,11 @@ def job(config: DictConfig) -> int:
     os.chdir(hydra.runtime.cwd)  # where paths are typed, also with hydra.job.chdir=true
     try:
         run = run_of(config, hydra.runtime, words)
-        if not sweep:
-            warn(told([(run.trials, work_of(run))]))
-        execution = execute(run, command(words, hydra.runtime.config_sources), tell=warn)
+        warn(edited_meanwhile() if sweep else told([(run.trials, work_of(run))]))
+        again = command(words, hydra.runtime.config_sources)
+        launcher = hydra.runtime.choices["hydra/launcher"]
+        asked = asker_of_job(hydra.job.num, launcher) if sweep else asker()
+        execution = execute(run, again, tell=warn, asker=asked)
     except FAULTS as error:
         return refuse(error, words, sweep)
     try:
@@ -183,9 +187,13 @@ def check_apart(folder: Path, words: list[str], before: dict[Path, list[str]]) -
     require(first is words, "sweep", both, f"jobs that differ in more than {', '.join(HOW)}")
 
 
+_OWN_WAY = ("output=", "force=", "provenance=")
+"""Settings of who runs it, which somebody else who does the same has no use for."""
+
+
 def command(words: Sequence[str], sources: Sequence[Mapping[str, str]]) -> str:
     """Give the command that does the same job, wherever its folder lies."""
-    kept = [word for word in words if not word.startswith(("output=", "force="))]
+    kept = [word for word in words if not word.startswith(_OWN_WAY)]
     own = [source["path"] for source in sources if source["provider"] == "command-line"]
     return shlex.join(["gapath", *(f"--config-dir={path}" for path in own), *kept])
 

@@ -23,6 +23,7 @@ from gapath.store.settings import flatten, nested
 from gapath.task import Batch, Posing, Task, find_task
 
 _HOW = {"recorder": {}, "output": "-", "force": False, "threads": 1, "kernels": AUTO}
+_HOW |= {"provenance": False}
 """What a log does not say, since it changes nothing in it."""
 
 MOST_WORK = 10**9

@@ -43,8 +43,8 @@ class Root:
         Name of a `CornerCutting` rule, in lower case.
     output : str
         Folder of the run folders.
-    force : bool
-        Run again what is there already.
+    force, provenance : bool
+        Run again what is there already; say where runs come from: code, machine, who asked.
     threads : int
         Threads that do the trials of a run, if the task has any use for them.
     kernels : str
@@ -62,12 +62,13 @@ class Root:
     force: bool
     threads: int
     kernels: str
+    provenance: bool
 
 
 RESERVED = ("bench", "compare", "report")
 """Folders of outputs that hold no runs."""
 
-HOW = ("output", "force", "threads", "kernels")
+HOW = ("output", "force", "threads", "kernels", "provenance")
 """Settings of how to run, which change no result: no part of a run's settings."""
 
 
@@ -93,8 +94,8 @@ class Run:
         The resolved configuration, flat, without `HOW`.
     output : str
         Folder of the run folders.
-    force : bool
-        Run again what is there already.
+    force, provenance : bool
+        Run again what is there already; say where it comes from.
     threads : int
         Threads that do the trials; they change no result.
     map_inputs, method_inputs : mapping
@@ -114,6 +115,7 @@ class Run:
     threads: int = 1
     map_inputs: Inputs = field(default_factory=dict, repr=False)
     method_inputs: Inputs = field(default_factory=dict, repr=False)
+    provenance: bool = False
 
     @property
     def inputs(self) -> Inputs:
@@ -197,6 +199,7 @@ def make_run(
         root.threads,
         map_inputs,
         method_inputs | checked_with,
+        root.provenance,
     )
 
 

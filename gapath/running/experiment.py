@@ -6,6 +6,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import yaml
@@ -19,6 +20,7 @@ from gapath.running.progress import Done, Earlier, Journal, earlier
 from gapath.store.durable import named, write_whole
 from gapath.store.inputs import Inputs, Reads, watched
 from gapath.store.keys import run_key, setting_hash, versions
+from gapath.store.provenance.origin import Origin, origin_of
 from gapath.store.records import (
     CONFIG,
     MANIFEST,
@@ -28,7 +30,7 @@ from gapath.store.records import (
 )
 from gapath.store.rows import parquet
 from gapath.store.runfolder import Busy, RunFolder
-from gapath.store.settings import nested, tabular
+from gapath.store.settings import Flat, nested, tabular
 from gapath.store.status import STATUS, RunState, Status, now
 from gapath.store.whole import check_places, files_of, finish, is_finished, is_whole, settle
 from gapath.task import Batch, Trial, columns, results
@@ -73,7 +75,11 @@ def run_started(run: Run, optimum: Plan) -> RunStarted:
 
 
 def execute(
-    run: Run, command: str, progress: bool = True, tell: Callable[[str], None] = lambda line: None
+    run: Run,
+    command: str,
+    progress: bool = True,
+    tell: Callable[[str], None] = lambda line: None,
+    asker: Flat = MappingProxyType({}),
 ) -> Execution:
     """Do a run and write its folder.
 
@@ -87,6 +93,8 @@ def execute(
         Show a bar while it runs, if the error stream is a terminal.
     tell : callable
         Takes a line that says after which trial a run that was cut short goes on.
+    asker : mapping
+        Who asked for it, for the manifest: the command that was typed, a job's place in its sweep.
 
     Returns
     -------
@@ -109,7 +117,9 @@ def execute(
             whole = is_whole(folder, run.settings)
             if whole and not run.force:
                 return skipped
-            return _execute_held(run, folder, command, _Watched(progress, tell), whole)
+            origin = origin_of(asker) if run.provenance else Origin({}, {})
+            manifest = replace(_manifest(run, folder, command), provenance=origin.said)
+            return _execute_held(run, folder, (manifest, origin), _Watched(progress, tell), whole)
     except Busy:
         return Execution(folder.path, RunState.BUSY, [], [])
 
@@ -128,9 +138,10 @@ class _Watched(NamedTuple):
 
 
 def _execute_held(
-    run: Run, folder: RunFolder, command: str, shown: _Watched, again: bool
+    run: Run, folder: RunFolder, known: tuple[Manifest, Origin], shown: _Watched, again: bool
 ) -> Execution:
     """Do a run in a folder that is held; `again`: one is there whole, and stays until this is."""
+    manifest, origin = known
     work = folder.work
     told = work if again else folder  # where it is said how far this run is
     status = Status(RunState.RUNNING, now())
@@ -138,24 +149,26 @@ def _execute_held(
         found = earlier(folder, run)
         folder.begin(found.folder if found.trials else None)
         found = replace(found, folder=folder.before)
-        manifest = _manifest(run, folder, command)
         before = files_of(folder, Status.read(folder.path).manifest)
         digest = replace(manifest, files=before).write(told)  # what it is, should it be killed
         status = replace(status, manifest=digest)
         status.write(told)
         config = yaml.safe_dump(nested(run.settings), sort_keys=False, allow_unicode=True)
         write_whole(work.path / CONFIG, config.encode())
+        for name, diff in origin.files.items():
+            write_whole(work.path / name, diff)
         with watched() as read:
             optimum = run.task.optimum(run.problem)
-            done, recorded = _do_trials(run, optimum, _Kept(folder, found, read), shown)
+            taken, done, recorded = _do_trials(run, optimum, _Kept(folder, found, read), shown)
         rows, late = [each.row for each in done], _outside(folder, read)
         late = {path: digest for each in done for path, digest in each.late.items()} | late
         values = [row.values() for row in rows]
         write_whole(work.path / TRIALS, _table(run, values))
-        names = [CONFIG, TRIALS, *recorded]
+        names = [CONFIG, TRIALS, *recorded, *origin.files]
         came = results(type(run.task), {name: [row[name] for row in values] for name in values[0]})
         files = {name: FileEntry.of(work, name) for name in names}
-        whole = replace(manifest, files=files, late_inputs=late, results=came)
+        whole = replace(manifest, files=files, late_inputs=late, results=came,
+                        provenance=origin.ended(taken))  # fmt: skip
         state = RunState.DONE if optimum.feasible else RunState.INFEASIBLE
         finish(folder, whole, replace(status, state=state, finished=now()))
         return Execution(folder.path, state, rows, [*names, MANIFEST, STATUS])
@@ -186,7 +199,8 @@ def _outside(folder: RunFolder, read: Inputs) -> dict[str, str]:
 
 def _do_trials(
     run: Run, optimum: Plan, kept: _Kept, shown: _Watched
-) -> tuple[list[Done], list[str]]:
+) -> tuple[int, list[Done], list[str]]:
+    """Do the trials; gives how many an earlier run had done, all of them, and recorders' files."""
     from tqdm import tqdm
 
     work, rows, step = kept.folder.work, list[Done](), 0
@@ -235,7 +249,7 @@ def _do_trials(
             journal.add(rows[-1])
         record(RunFinished(step, run.trials, sum(done.found for done in rows)))
         journal.close()
-        return rows, [name for recorder in run.recorders for name in recorder.close()]
+        return count, rows, [name for recorder in run.recorders for name in recorder.close()]
     except BaseException as error:
         for recorder in run.recorders:
             with suppress(OSError):  # on a full disk a file's last bytes have no room, either

@@ -1,6 +1,7 @@
 """What a run is named by: everything that its results depend on."""
 
 import hashlib
+import os
 from collections.abc import Iterable
 from functools import lru_cache
 from importlib import metadata
@@ -29,14 +30,46 @@ def code_hash() -> str:
     Returns
     -------
     str
-        Sixteen hexadecimal digits; the same for a checkout and a wheel of the same sources.
+        Sixteen hexadecimal digits; the same for a checkout and a wheel of the same sources, and
+        for as long as a process lives.
     """
-    package = Path(__file__).parents[1]
-    own = sorted((path.relative_to(package).as_posix(), path) for path in package.rglob("*.py"))
-    own = [(name, path) for name, path in own if name.partition("/")[0] not in _NO_CODE]
+    return code_now()
+
+
+def code_now() -> str:
+    """Hash the sources as `code_hash` does, as they are now: edited ones are others."""
+    own = []
+    for place, folders, names in os.walk(_PACKAGE):
+        within = place[len(_PACKAGE) + 1 :]
+        if not within:
+            folders[:] = [name for name in folders if name not in _NO_CODE]
+        own += [(f"{within}/{n}".lstrip("/"), f"{place}/{n}") for n in names if n.endswith(".py")]
+    files = [*sorted(own), *((name, str(path)) for name, path in other_files())]
+    return _hash_of(tuple((name, path, *_written(path)) for name, path in files))
+
+
+def edited(code: str) -> bool:
+    """Tell whether the sources are others now than those of a `code_hash`."""
+    try:
+        return code_now() != code
+    except OSError:  # an editor is at it
+        return True
+
+
+_PACKAGE = str(Path(__file__).parents[1])
+
+
+def _written(path: str) -> tuple[int, int, int]:
+    """Tell when a file was written: who edits it changes one of these, so it is not read again."""
+    found = Path(path).stat()
+    return found.st_mtime_ns, found.st_size, found.st_ino
+
+
+@lru_cache(maxsize=2)
+def _hash_of(sources: tuple[tuple[str, str, int, int, int], ...]) -> str:
     digest = hashlib.sha256()
-    for name, path in [*own, *other_files()]:
-        digest.update(name.encode() + b"\0" + path.read_bytes())
+    for name, path, *_ in sources:
+        digest.update(name.encode() + b"\0" + Path(path).read_bytes())
     return digest.hexdigest()[:16]
 
 

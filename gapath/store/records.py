@@ -103,6 +103,9 @@ class Manifest:
         empty of others.
     results : Results
         What the trials of ``trials.parquet`` come to; None of earlier versions.
+    provenance : mapping of str to mapping
+        Where the run comes from (`gapath.store.provenance`), sections of values: nothing of it
+        changes a key or a log. Empty if it was not to be said, None of earlier versions.
     """
 
     key: str
@@ -128,6 +131,7 @@ class Manifest:
     settings: Mapping[str, Value] | None = None
     queries: str = ""
     results: Results | None = None
+    provenance: Mapping[str, Flat] | None = None
 
     def write(self, folder: RunFolder) -> str:
         """Write it, whole; gives its SHA-256, for the status."""

@@ -8,7 +8,7 @@ import pytest
 
 MAPS = r"one of \d+ names, see gapath --help"
 ROOT = "choice, corner_cutting, drive, experiment, force, kernels, map, name, navigator, output, "
-ROOT += "planner, recorder, scenario, seed, task, threads, trials"
+ROOT += "planner, provenance, recorder, scenario, seed, task, threads, trials"
 
 CASES = {
     # A name that there is not.
@@ -82,7 +82,7 @@ CASES = {
     "task=plan or task=scenario, to which the group planner belongs",
     # Jobs of one sweep that are one run.
     "-m threads=1,2": "sweep: got threads=1 and threads=2, which are one run, expected jobs that "
-    "differ in more than output, force, threads, kernels",
+    "differ in more than output, force, threads, kernels, provenance",
 }
 
 

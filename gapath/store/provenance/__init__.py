@@ -1,0 +1,1 @@
+"""Where a run comes from: code, machine, what is installed, who asked for it."""
