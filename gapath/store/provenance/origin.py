@@ -90,7 +90,7 @@ def origin_of(asker: Flat) -> Origin:
         "directory": directory,
         "gapath": {**source, "code": code_hash(), "edited": edited(code_hash())},
         "machine": machine(),
-        "asker": asker,
+        "asker": dict(asker),
         "packages": packages(),
     }
     return Origin(said, files, clocks.begun, clocks.used)
