@@ -14,11 +14,12 @@ from typing import (
     NamedTuple,
     Protocol,
     Self,
+    TypeAlias,
     get_args,
     runtime_checkable,
 )
 
-from numpy.typing import ArrayLike
+from numpy.typing import NDArray
 
 from gapath.discovery import kinds, load
 from gapath.errors import InputError, one_of, require, require_all
@@ -31,6 +32,11 @@ from gapath.store.results import Results
 
 Measure = Callable[[Problem, Plan], float]
 """Measures a path, whoever found it."""
+
+
+Rows: TypeAlias = Mapping[str, NDArray[Any]]
+"""A run's rows by column, a value a trial: bool, int64, float64, uint64 (the seed), or str objects.
+A column is read when it is asked for, so rows of a million trials take the room of one."""
 
 
 class Batch(NamedTuple):
@@ -178,14 +184,14 @@ _NO_RESULTS = ("map_instance", "seed", "trial")
 """Numbers in the rows that name something."""
 
 
-def results(task: type["Task"], trials: Mapping[str, ArrayLike]) -> Results:
+def results(task: type["Task"], rows: Rows) -> Results:
     """Sum up trials.
 
     Parameters
     ----------
     task : type
         Their task.
-    trials : mapping of str to (n,) array
+    rows : mapping of str to (n,) array
         The columns of their rows; one that is missing has no sum.
 
     Returns
@@ -194,8 +200,8 @@ def results(task: type["Task"], trials: Mapping[str, ArrayLike]) -> Results:
         Its sums are those of all columns that hold numbers or booleans.
     """
     numeric = [name for name, kind in columns(task.row).items() if kind is not str]
-    kept = [name for name in numeric if name in trials and name not in _NO_RESULTS]
-    return Results.of(trials[task.success], {name: trials[name] for name in kept})
+    kept = [name for name in numeric if name in rows and name not in _NO_RESULTS]
+    return Results.of(rows[task.success], ((name, rows[name]) for name in kept))
 
 
 @dataclass(frozen=True, eq=False)
@@ -265,10 +271,10 @@ class Task(Protocol):
     def trials(self, batch: Batch, optimum: Plan) -> Iterator[Trial]:
         """Do the trials from `Batch.first` on; no event is made before the clock has stopped."""
 
-    def summary(self, rows: list[Any]) -> dict[str, object]:
-        """Sum rows up for the terminal: label -> value."""
+    def summary(self, rows: Rows) -> dict[str, object]:
+        """Sum rows up for the terminal: label -> value; take no more columns than it needs."""
 
-    def line(self, rows: list[Any]) -> str:
+    def line(self, rows: Rows) -> str:
         """Sum rows up in one line."""
 
 

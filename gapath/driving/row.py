@@ -41,11 +41,6 @@ class DriveRow(Row):
     cost: float
     compute_time_s: float
 
-    @property
-    def never_left(self) -> bool:
-        """Whether the robot came back without having gone anywhere."""
-        return self.outcome == Outcome.RETURNED.name.lower() and self.stands == self.steps
-
 
 def drive_row(batch: Batch, trial: int, driven: Driven, optimum: Plan) -> DriveRow:
     """Sum a drive up.

@@ -5,8 +5,6 @@ of lines is one of steps: for A* it is the `curvature`. A line drawn field by fi
 every field, a robot on the line does not turn at all: so here lines count where there are any.
 """
 
-import numpy as np
-
 from gapath.planning.path import polyline_length, turning, without_stands
 from gapath.problem import Plan, Problem
 
@@ -31,4 +29,4 @@ def measure(problem: Problem, plan: Plan) -> float:
     lines = plan.lines()
     points = without_stands(lines if len(lines) else plan.path)
     length = polyline_length(points)
-    return float(np.sum(turning(points)) / length) if length else 0.0
+    return float(turning(points).sum() / length) if length else 0.0

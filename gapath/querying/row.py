@@ -2,16 +2,16 @@
 
 import json
 import math
-import statistics
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
+
+import numpy as np
 
 from gapath.planning.path import octile_length
 from gapath.planning.shortest_path import shortest_path
 from gapath.planning.simulation import TimedPlan
 from gapath.problem import Plan, Problem
-from gapath.task import Batch, Row, head
+from gapath.task import Batch, Row, Rows, head
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,8 @@ def plan_values(
     }
 
 
-def median_time(rows: Sequence[PlanRow]) -> str:
+def median_time(rows: Rows) -> str:
     """Write the median time of planners' calls for people, of those that were made."""
-    known = [row.plan_time_s for row in rows if not math.isnan(row.plan_time_s)]
-    return f"{1000 * statistics.median(known):.3g} ms" if known else "none, nothing was planned"
+    times = rows["plan_time_s"]
+    known = times[~np.isnan(times)]
+    return f"{1000 * np.median(known):.3g} ms" if len(known) else "none, nothing was planned"

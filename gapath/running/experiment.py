@@ -2,12 +2,12 @@
 
 import traceback
 from collections.abc import Callable, Iterator
-from contextlib import suppress
+from contextlib import AbstractContextManager, closing, suppress
 from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import yaml
 
@@ -16,7 +16,7 @@ from gapath.errors import InputError, printable
 from gapath.events import Event, RunFinished, RunStarted
 from gapath.problem import Plan
 from gapath.running.config import Run
-from gapath.running.progress import Done, Earlier, Journal, earlier
+from gapath.running.progress import Done, Earlier, Journal, done_of, earlier
 from gapath.store.durable import named, write_whole
 from gapath.store.inputs import Inputs, Reads, watched
 from gapath.store.keys import run_key, setting_hash, versions
@@ -28,7 +28,7 @@ from gapath.store.records import (
     FileEntry,
     Manifest,
 )
-from gapath.store.rows import parquet
+from gapath.store.rows import RowWriter, StoredRows, written_rows
 from gapath.store.runfolder import Busy, RunFolder
 from gapath.store.settings import Flat, nested, tabular
 from gapath.store.status import STATUS, RunState, Status, now
@@ -46,16 +46,18 @@ class Execution:
         The run folder.
     state : RunState
         DONE, INFEASIBLE, SKIPPED or BUSY.
-    rows : list of dataclass
-        The trials, of the task's row type; empty if the run was not executed.
     files : list of str
         Names of the files that it wrote.
     """
 
     folder: Path
     state: RunState
-    rows: list[Any]
     files: list[str]
+
+    @property
+    def rows(self) -> StoredRows:
+        """The trials of a run that is whole, by column; raises InputError if there are none."""
+        return StoredRows(self.folder / TRIALS)
 
 
 def run_started(run: Run, optimum: Plan) -> RunStarted:
@@ -107,7 +109,7 @@ def execute(
         If the folder, or a file in it, cannot be written.
     """
     folder = run_folder(run)
-    skipped = Execution(folder.path, RunState.SKIPPED, [], [])
+    skipped = Execution(folder.path, RunState.SKIPPED, [])
     if not run.force and is_whole(folder, run.settings):  # also where nothing may be written
         return skipped
     folder.create()
@@ -121,7 +123,7 @@ def execute(
             manifest = replace(_manifest(run, folder, command), provenance=origin.said)
             return _execute_held(run, folder, (manifest, origin), _Watched(progress, tell), whole)
     except Busy:
-        return Execution(folder.path, RunState.BUSY, [], [])
+        return Execution(folder.path, RunState.BUSY, [])
 
 
 def run_folder(run: Run) -> RunFolder:
@@ -147,7 +149,7 @@ def _execute_held(
     status = Status(RunState.RUNNING, now())
     try:
         found = earlier(folder, run)
-        folder.begin(found.folder if found.trials else None)
+        folder.begin(found.folder if found.count else None)
         found = replace(found, folder=folder.before)
         before = files_of(folder, Status.read(folder.path).manifest)
         digest = replace(manifest, files=before).write(told)  # what it is, should it be killed
@@ -157,21 +159,19 @@ def _execute_held(
         write_whole(work.path / CONFIG, config.encode())
         for name, diff in origin.files.items():
             write_whole(work.path / name, diff)
-        with watched() as read:
+        with _written_rows(run, work) as rows, watched() as read:
             optimum = run.task.optimum(run.problem)
-            taken, done, recorded = _do_trials(run, optimum, _Kept(folder, found, read), shown)
-        rows, late = [each.row for each in done], _outside(folder, read)
-        late = {path: digest for each in done for path, digest in each.late.items()} | late
-        values = [row.values() for row in rows]
-        write_whole(work.path / TRIALS, _table(run, values))
+            kept = _Kept(folder, found, read, rows)
+            taken, late, recorded = _do_trials(run, optimum, kept, shown)
         names = [CONFIG, TRIALS, *recorded, *origin.files]
-        came = results(type(run.task), {name: [row[name] for row in values] for name in values[0]})
         files = {name: FileEntry.of(work, name) for name in names}
-        whole = replace(manifest, files=files, late_inputs=late, results=came,
-                        provenance=origin.ended(taken))  # fmt: skip
+        came = results(type(run.task), StoredRows(work.path / TRIALS))
+        late |= _outside(folder, read)
+        said = origin.ended(taken)
+        whole = replace(manifest, files=files, late_inputs=late, results=came, provenance=said)
         state = RunState.DONE if optimum.feasible else RunState.INFEASIBLE
         finish(folder, whole, replace(status, state=state, finished=now()))
-        return Execution(folder.path, state, rows, [*names, MANIFEST, STATUS])
+        return Execution(folder.path, state, [*names, MANIFEST, STATUS])
     except BaseException as error:
         interrupted = isinstance(error, KeyboardInterrupt)
         state = RunState.INTERRUPTED if interrupted else RunState.FAILED
@@ -189,6 +189,7 @@ class _Kept(NamedTuple):
     folder: RunFolder
     earlier: Earlier
     read: Reads
+    rows: RowWriter
 
 
 def _outside(folder: RunFolder, read: Inputs) -> dict[str, str]:
@@ -199,63 +200,66 @@ def _outside(folder: RunFolder, read: Inputs) -> dict[str, str]:
 
 def _do_trials(
     run: Run, optimum: Plan, kept: _Kept, shown: _Watched
-) -> tuple[int, list[Done], list[str]]:
-    """Do the trials; gives how many an earlier run had done, all of them, and recorders' files."""
+) -> tuple[int, dict[str, str], list[str]]:
+    """Do what is left.
+
+    Gives how many trials an earlier run had done, the files that were read meanwhile, and those
+    that recorders wrote.
+    """
     from tqdm import tqdm
 
-    work, rows, step = kept.folder.work, list[Done](), 0
+    work, kinds, late = kept.folder.work, columns(run.task.row), dict[str, str]()
+    step = found = 0
     started = run_started(run, optimum)
     what = printable(f"{run.problem.map.name} {run.method.name}")
-    journal = None
 
     def record(event: Event) -> None:
         for recorder in run.recorders:
             recorder.record(event)
 
+    def note(done: Done, journal: Journal) -> None:
+        nonlocal step, found
+        step, found = step + done.steps, found + done.found
+        journal.add(done)
+        kept.rows.add(done.values)
+        late.update(done.late)
+
     try:
         taken, trials = _trials(run, optimum, started, kept)
-        count = len(taken.trials)
+        count = taken.count
         if count:
             shown.tell(f"{what}: goes on after trial {count - 1}, {count} of {run.trials} are done")
-        journal = Journal(work, run)
-        for recorder in run.recorders:
-            recorder.open(str(work.path))
-        begun = [path.name.removesuffix(".part") for path in work.path.iterdir()]
-        check_places(kept.folder, begun)  # sooner than after hours
-        record(started)
-        for done, events in zip(taken.trials[:-1], taken.events(run), strict=True):
-            for event in events:
-                record(event)
-            step += done.steps
-            journal.add(done)
-            rows.append(done)
-        bar = tqdm(
-            trials,
-            desc=what,
-            total=run.trials,
-            initial=len(rows),
-            unit="trial",
-            leave=False,
-            disable=None if shown.progress else True,
-        )
-        for trial in bar:
-            if run.recorders:
-                for event in trial.events(step):
+        with closing(Journal(work, run)) as journal:
+            for recorder in run.recorders:
+                recorder.open(str(work.path))
+            begun = [path.name.removesuffix(".part") for path in work.path.iterdir()]
+            check_places(kept.folder, begun)  # sooner than after hours
+            record(started)
+            for done, events in taken.trials(run):
+                for event in events:
                     record(event)
-            step += trial.steps
-            new = kept.read.note()
-            late = _outside(kept.folder, new) if new else {}
-            rows.append(Done(trial.row, trial.found, trial.steps, late))
-            journal.add(rows[-1])
-        record(RunFinished(step, run.trials, sum(done.found for done in rows)))
-        journal.close()
-        return count, rows, [name for recorder in run.recorders for name in recorder.close()]
+                note(done, journal)
+            bar = tqdm(
+                trials,
+                desc=what,
+                total=run.trials,
+                initial=max(count - 1, 0),
+                unit="trial",
+                leave=False,
+                disable=None if shown.progress else True,
+            )
+            for trial in bar:
+                if run.recorders:
+                    for event in trial.events(step):
+                        record(event)
+                new = kept.read.note()
+                note(done_of(trial, _outside(kept.folder, new) if new else {}, kinds), journal)
+            record(RunFinished(step, run.trials, found))
+        return count, late, [name for recorder in run.recorders for name in recorder.close()]
     except BaseException as error:
         for recorder in run.recorders:
             with suppress(OSError):  # on a full disk a file's last bytes have no room, either
                 recorder.abort()
-        if journal is not None:
-            journal.close()
         where = component_of(error)
         if where.startswith("recorder "):
             with named(f"{work.path}, {where}"):
@@ -271,22 +275,22 @@ def _trials(
     If that one comes to something else now, nothing is taken up, and all trials are left.
     """
     batch = Batch(run.experiment, run.method.name, run.problem, run.seed, run.trials, run.threads)
-    if kept.earlier.trials:
-        first = len(kept.earlier.trials) - 1
+    if kept.earlier.count:
+        first = kept.earlier.count - 1
         trials = run.task.trials(batch._replace(first=first), optimum)
         trial = next(trials)
-        if kept.earlier.agrees(trial, started):
+        if kept.earlier.agrees(run, trial, started):
             return kept.earlier, chain([trial], trials)
         kept.folder.clear(kept.folder.work)
     return Earlier(kept.folder.before), run.task.trials(batch, optimum)
 
 
-def _table(run: Run, rows: list[dict[str, Any]]) -> bytes:
-    """Give the trials' rows, and each setting as a column unless it stands in them already."""
-    types = columns(run.task.row)
-    there = {*types, "name"}  # the rows' experiment
+def _written_rows(run: Run, work: RunFolder) -> AbstractContextManager[RowWriter]:
+    """Write the trials' rows, and each setting as a column unless it stands in them already."""
+    kinds = columns(run.task.row)
+    there = {*kinds, "name"}  # the rows' experiment
     own = {key: value for key, value in tabular(run.settings).items() if key not in there}
-    return parquet(types, rows, own)
+    return written_rows(work.path / TRIALS, kinds, own)
 
 
 def _manifest(run: Run, folder: RunFolder, command: str) -> Manifest:

@@ -12,7 +12,7 @@ import io
 import itertools
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import IO, Any, NamedTuple
 
 from gapath.errors import InputError
@@ -28,13 +28,14 @@ _TIME = "_s"  # columns of times, in seconds, end so
 
 
 class Done(NamedTuple):
-    """A trial that was done."""
+    """A trial that was done, as it stands in `PROGRESS`."""
 
-    row: Any
     found: bool
     steps: int
     late: Inputs
     """What was read while it was done, and by no trial before it."""
+    values: list[Any]
+    """A value for each column of its row, in their order."""
 
 
 class Journal:
@@ -54,16 +55,14 @@ class Journal:
     """
 
     def __init__(self, folder: RunFolder, run: Run) -> None:
-        self._path, self._types = folder.path / PROGRESS, columns(run.task.row)
-        self._chain = _Chain()
+        self._path, self._chain = folder.path / PROGRESS, _Chain()
         with named(self._path):
             self._file: IO[bytes] = new_file(self._path)
         self._write(_head(folder, run))
 
     def add(self, done: Done) -> None:
         """Add a trial; raises InputError if it cannot be written."""
-        row = [*_typed(done.row, self._types).values()]
-        self._write([bool(done.found), int(done.steps), dict(done.late), row])
+        self._write(done)
 
     def _write(self, content: object) -> None:
         text = json.dumps(content).encode()
@@ -110,21 +109,29 @@ class Earlier:
     ----------
     folder : RunFolder
         Where that lies.
-    trials : list of Done
-        The first ones, in order, whose rows and events are whole.
-    last : list of Event
-        The events of the last of them, if they were recorded.
+    count : int
+        How many trials, the first ones, have whole rows and events.
+    steps : int
+        Steps of the log that those before the last of them take.
+    last : Done or None
+        The last of them.
+    events : list of Event
+        Its events, if they were recorded.
     """
 
     folder: RunFolder
-    trials: list[Done] = field(default_factory=list)
-    last: list[Event] = field(default_factory=list)
+    count: int = 0
+    steps: int = 0
+    last: Done | None = None
+    events: list[Event] = field(default_factory=list)
 
-    def agrees(self, trial: Trial, started: RunStarted) -> bool:
+    def agrees(self, run: Run, trial: Trial, started: RunStarted) -> bool:
         """Tell whether the last trial comes to the same again.
 
         Parameters
         ----------
+        run : Run
+            The run.
         trial : Trial
             The one that was done again.
         started : RunStarted
@@ -135,26 +142,25 @@ class Earlier:
         bool
             Whether its row but for times, and its messages in the log, are equal.
         """
-        *before, last = self.trials
-        now = (bool(trial.found), trial.steps, _untimed(trial.row))
-        if now != (last.found, last.steps, _untimed(last.row)):
+        kinds = columns(run.task.row)
+        now, last = done_of(trial, {}, kinds), self.last
+        if last is None or _untimed(now, kinds) != _untimed(last, kinds):
             return False
-        if not self.last:
+        if not self.events:
             return True
         from gapath.recorders.mcap.messages import Messages
 
-        again = trial.events(sum(done.steps for done in before))
         was, now_is = Messages(started), Messages(started)
-        told = [record for event in self.last for record in was.records(event)]
+        told = [record for event in self.events for record in was.records(event)]
+        again = trial.events(self.steps)
         return told == [record for event in again for record in now_is.records(event)]
 
-    def events(self, run: Run) -> Iterator[list[Event]]:
-        """Give the events of all trials but the last one; none each if nobody recorded."""
-        count = max(len(self.trials) - 1, 0)
-        if not run.recorders:
-            yield from ([] for _ in range(count))
-        elif count:
-            yield from itertools.islice(_logged(self.folder, run), count)
+    def trials(self, run: Run) -> Iterator[tuple[Done, list[Event]]]:
+        """Give all trials but the last one, with their events; none each if nobody recorded."""
+        count = max(self.count - 1, 0)
+        done = itertools.islice(_journaled(self.folder, run), count)
+        told = itertools.islice(_logged(self.folder, run), count)
+        return zip(done, told if run.recorders else itertools.repeat([], count), strict=True)
 
 
 def earlier(folder: RunFolder, run: Run) -> Earlier:
@@ -176,28 +182,25 @@ def earlier(folder: RunFolder, run: Run) -> Earlier:
 
 
 def _count(found: Earlier) -> int:
-    return len(found.trials)
+    return found.count
 
 
 def _read(folder: RunFolder, run: Run) -> Earlier:
-    nothing = Earlier(folder)
+    found = Earlier(folder)
     if folder.path.is_symlink():
-        return nothing
-    done = list(_journaled(folder, run))
-    late = {path: digest for trial in done for path, digest in trial.late.items()}
-    if not done or not unchanged(late):
-        return nothing
-    if not run.recorders:
-        return Earlier(folder, done)
-    count, last = 0, list[Event]()
-    for events in itertools.islice(_logged(folder, run), len(done)):
-        count, last = count + 1, events
-    return Earlier(folder, done[:count], last)
+        return found
+    told = _logged(folder, run) if run.recorders else itertools.repeat(list[Event]())
+    count, steps, late = 0, 0, dict[str, str]()
+    last, events = None, list[Event]()
+    for done, events_of_it in zip(_journaled(folder, run), told, strict=False):
+        steps += last.steps if last else 0
+        count, last, events = count + 1, done, events_of_it
+        late |= done.late
+    return Earlier(folder, count, steps, last, events) if unchanged(late) else found
 
 
 def _journaled(folder: RunFolder, run: Run) -> Iterator[Done]:
     """Give the trials of `PROGRESS`, up to the first line that is not as it was written."""
-    names, own = [*columns(run.task.row)], {each.name for each in fields(run.task.row)}
     chain, head = _Chain(), True
     with (
         contextlib.suppress(OSError, ValueError, TypeError),  # no such file, or not as ours
@@ -214,14 +217,7 @@ def _journaled(folder: RunFolder, run: Run) -> Iterator[Done]:
                     return
                 head = False
                 continue
-            found, steps, late, values = content
-            row = _row(run, dict(zip(names, values, strict=True)), own)
-            yield Done(row, found, steps, late)
-
-
-def _row(run: Run, values: Mapping[str, Any], own: set[str]) -> Any:
-    metrics = {name: value for name, value in values.items() if name not in own}
-    return run.task.row(**{n: v for n, v in values.items() if n in own}, metrics=metrics)
+            yield Done(*content)
 
 
 def _logged(folder: RunFolder, run: Run) -> Iterator[list[Event]]:
@@ -246,12 +242,28 @@ def _logged(folder: RunFolder, run: Run) -> Iterator[list[Event]]:
                 count, trial = count + 1, []
 
 
-def _typed(row: Any, types: Mapping[str, type]) -> dict[str, Any]:
-    """Give a row's values as `gapath.store.rows.parquet` takes them, not as types of NumPy."""
-    values = row.values()
-    return {name: kind(values[name]) for name, kind in types.items()}
+def done_of(trial: Trial, late: Inputs, kinds: Mapping[str, type]) -> Done:
+    """Give a trial as it is written down.
+
+    Parameters
+    ----------
+    trial : Trial
+        It was done.
+    late : mapping of str to str
+        What was read meanwhile, and by no trial before it.
+    kinds : mapping of str to type
+        `gapath.task.columns` of its row.
+
+    Returns
+    -------
+    Done
+        Its values are of these types, not of NumPy's.
+    """
+    values = trial.row.values()
+    typed = [kind(values[name]) for name, kind in kinds.items()]
+    return Done(bool(trial.found), int(trial.steps), dict(late), typed)
 
 
-def _untimed(row: Any) -> str:
-    values = _typed(row, columns(type(row)))
-    return json.dumps({name: v for name, v in values.items() if not name.endswith(_TIME)})
+def _untimed(done: Done, kinds: Mapping[str, type]) -> str:
+    kept = [v for name, v in zip(kinds, done.values, strict=True) if not name.endswith(_TIME)]
+    return json.dumps([done.found, done.steps, kept])

@@ -146,6 +146,37 @@ def sync_folder(path: Path) -> None:
         os.close(folder)
 
 
+@contextlib.contextmanager
+def part_file(path: Path) -> Iterator[IO[bytes]]:
+    """Make a file under its ``.part`` name, durably.
+
+    Parameters
+    ----------
+    path : Path
+        The file's final name.
+
+    Yields
+    ------
+    file
+        Open for writing; whoever writes says which file it was (`named`).
+
+    Raises
+    ------
+    InputError
+        If it cannot be made, or what was written is not on the disk.
+    """
+    with named(path):
+        file = new_file(part_of(path))
+    try:
+        yield file
+        with named(path):
+            file.flush()
+            os.fsync(file.fileno())
+    finally:
+        with contextlib.suppress(OSError):  # on a full disk its last bytes have no room, either
+            file.close()
+
+
 def write_part(path: Path, data: bytes) -> None:
     """Write all of a file's content, durably, under its ``.part`` name.
 
@@ -161,10 +192,8 @@ def write_part(path: Path, data: bytes) -> None:
     InputError
         If it cannot be written.
     """
-    with named(path), new_file(part_of(path)) as file:
+    with part_file(path) as file, named(path):
         file.write(data)
-        file.flush()
-        os.fsync(file.fileno())
 
 
 def publish(source: Path, target: Path) -> None:

@@ -47,6 +47,8 @@ class Reads(dict[str, str]):
     def note(self) -> Inputs:
         """Take in the files that were opened since, as they are now; gives those that are new."""
         count = len(self.opened)  # other threads may open more meanwhile
+        if not count:
+            return {}
         paths = dict.fromkeys(self.opened[:count])
         del self.opened[:count]
         unseen = paths.keys() - self._seen

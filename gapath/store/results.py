@@ -1,9 +1,10 @@
 """What a run's trials come to, as sums: those of several runs can be added."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import chain
 from typing import Self
 
 import numpy as np
@@ -30,15 +31,16 @@ class Results:
     counts: Mapping[str, int]
 
     @classmethod
-    def of(cls, success: ArrayLike, columns: Mapping[str, ArrayLike]) -> Self:
+    def of(cls, success: ArrayLike, columns: Iterable[tuple[str, ArrayLike]]) -> Self:
         """Sum up trials.
 
         Parameters
         ----------
         success : (n,) bool
             Whether each trial succeeded.
-        columns : mapping of str to (n,) numbers
-            What came of each trial; NaN where it is not defined.
+        columns : iterable of (str, (n,) numbers)
+            What came of each trial, by name; NaN where it is not defined. They are taken one
+            after the other, so no two need be in memory.
 
         Returns
         -------
@@ -46,20 +48,25 @@ class Results:
             The sums.
         """
         succeeded = np.asarray(success, dtype=bool)
-        values = {name: np.asarray(column, dtype=np.float64) for name, column in columns.items()}
-        known = {name: column[~np.isnan(column)] for name, column in values.items()}
-        return cls(
-            len(succeeded),
-            int(np.count_nonzero(succeeded)),
-            {name: exact_sum(column) for name, column in known.items()},
-            {name: len(known[name]) for name in known if len(known[name]) < len(succeeded)},
-        )
+        sums, counts = dict[str, float](), dict[str, int]()
+        for name, values in columns:
+            column = np.asarray(values, dtype=np.float64)
+            known = column[~np.isnan(column)]
+            sums[name] = exact_sum(known)
+            if len(known) < len(succeeded):
+                counts[name] = len(known)
+        return cls(len(succeeded), int(np.count_nonzero(succeeded)), sums, counts)
 
 
 def exact_sum(column: NDArray[np.float64]) -> float:
     """Add numbers and round once; infinite or NaN where there is no finite sum."""
     if np.isfinite(column).all():
+        parts = (column[i : i + _PART].tolist() for i in range(0, len(column), _PART))
         with suppress(OverflowError):
-            return math.fsum(column.tolist())
+            return math.fsum(chain.from_iterable(parts))
     with np.errstate(invalid="ignore", over="ignore"):
         return float(column.sum())
+
+
+_PART = 1 << 14
+"""Numbers that are objects of Python at once."""

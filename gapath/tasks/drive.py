@@ -1,7 +1,6 @@
 """The task to drive: trials are drives through an unknown map."""
 
 import math
-import statistics
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -33,7 +32,7 @@ from gapath.planning.path import path_weights
 from gapath.planning.planner import Particular
 from gapath.planning.shortest_path import shortest_path
 from gapath.problem import Plan, Problem
-from gapath.task import Batch, Trial
+from gapath.task import Batch, Rows, Trial
 
 LEAST_STEPS, MOST_STEPS = 2000, 10**6
 """The smallest step limit that a map's size gives, and the largest of all."""
@@ -239,64 +238,71 @@ class Task:
             problem.maps.get(KNOWN),
         )
 
-    def summary(self, rows: list[DriveRow]) -> dict[str, object]:
+    def summary(self, rows: Rows) -> dict[str, object]:
         """Sum drives up for the terminal: label -> value."""
-        if len(rows) == 1:
-            row = rows[0]
+        outcomes = rows["outcome"]
+        if len(outcomes) == 1:
+            numbers = ("steps", "shortest_steps", "steps_ratio", "calls_a", "calls_b", "calls_c")
+            first = {name: rows[name][0] for name in numbers}
             shortest = "no way to the target"
-            if not math.isnan(row.shortest_steps):
-                shortest = f"{row.shortest_steps:g} steps possible"
-            ratio = {} if math.isnan(row.steps_ratio) else {"ratio": f"{row.steps_ratio:.3g}"}
+            if not math.isnan(first["shortest_steps"]):
+                shortest = f"{first['shortest_steps']:g} steps possible"
+            known = not math.isnan(first["steps_ratio"])
+            ratio = {"ratio": f"{first['steps_ratio']:.3g}"} if known else {}
+            a, b, c = (first[f"calls_{part}"] for part in "abc")
             return {
-                "seed": row.seed,
-                "outcome": row.outcome + self._remark(rows),
-                "steps": row.steps,
-                "step limit": self._told_limit(row),
+                "seed": rows["seed"][0],
+                "outcome": outcomes[0] + self._remark(rows, outcomes[0]),
+                "steps": first["steps"],
+                "step limit": self._told_limit(rows),
                 "shortest": shortest,
                 **ratio,
-                "calls": f"{_calls(row)} (A {row.calls_a}, B {row.calls_b}, C {row.calls_c})",
-                "replans": row.replans,
-                "returns": row.returns,
+                "calls": f"{a + b + c} (A {a}, B {b}, C {c})",
+                "replans": rows["replans"][0],
+                "returns": rows["returns"][0],
                 "time": _median_time(rows),
             }
-        lines: dict[str, object] = {"drives": len(rows)}
-        for name, these in _by_outcome(rows).items():
-            share = f"{len(these)} ({100 * len(these) / len(rows):.1f} %)"
-            lines[name] = f"{share}{self._remark(these)}"
-        ratios = [row.steps_ratio for row in rows if not math.isnan(row.steps_ratio)]
-        if ratios:
-            lines["median ratio"] = f"{statistics.median(ratios):.3g} of the shortest possible"
-        lines["step limit"] = self._told_limit(rows[0])
-        lines["median calls"] = f"{statistics.median(map(_calls, rows)):g}"
+        lines: dict[str, object] = {"drives": len(outcomes)}
+        for name, count in _by_outcome(rows).items():
+            share = f"{count} ({100 * count / len(outcomes):.1f} %)"
+            lines[name] = f"{share}{self._remark(rows, name)}"
+        ratios = rows["steps_ratio"]
+        if len(ratios := ratios[~np.isnan(ratios)]):
+            lines["median ratio"] = f"{np.median(ratios):.3g} of the shortest possible"
+        lines["step limit"] = self._told_limit(rows)
+        calls = rows["calls_a"] + rows["calls_b"] + rows["calls_c"]
+        lines["median calls"] = f"{np.median(calls):g}"
         lines["median time"] = _median_time(rows)
         return lines
 
-    def line(self, rows: list[DriveRow]) -> str:
+    def line(self, rows: Rows) -> str:
         """Sum drives up in one line."""
-        if len(rows) == 1:
-            return (
-                f"{rows[0].outcome}{self._remark(rows)}, {rows[0].steps} steps, "
-                f"{_median_time(rows)}"
-            )
+        outcomes = rows["outcome"]
+        if len(outcomes) == 1:
+            ended = f"{outcomes[0]}{self._remark(rows, outcomes[0])}"
+            return f"{ended}, {rows['steps'][0]} steps, {_median_time(rows)}"
         ends = [
-            f"{len(these)} {name}{self._remark(these)}"
-            for name, these in _by_outcome(rows).items()
-            if these
+            f"{count} {name}{self._remark(rows, name)}"
+            for name, count in _by_outcome(rows).items()
+            if count
         ]
-        return f"{len(rows)} drives: {', '.join(ends)}; median {_median_time(rows)}"
+        return f"{len(outcomes)} drives: {', '.join(ends)}; median {_median_time(rows)}"
 
-    def _told_limit(self, row: DriveRow) -> str:
+    def _told_limit(self, rows: Rows) -> str:
         if self.step_limit:
             return str(self.step_limit)
-        return f"{usual_limit(row.width * row.height)}, from the map's size"
+        return f"{usual_limit(rows['width'][0] * rows['height'][0])}, from the map's size"
 
-    def _remark(self, rows: list[DriveRow]) -> str:
-        """Say what an outcome alone does not, of drives that ended alike."""
-        if any(row.outcome == Outcome.OVERRAN.name.lower() for row in rows):
+    def _remark(self, rows: Rows, name: str) -> str:
+        """Say what an outcome alone does not, of the drives that ended so."""
+        these = rows["outcome"] == name
+        if name == Outcome.OVERRAN.name.lower() and these.any():
             rule = "" if self.step_limit else f", {STEPS_RULE}"
-            return f" (drive.step_limit: {rows[0].steps}{rule})"
-        stayed = sum(row.never_left for row in rows)
-        return f" ({f'{stayed} ' if len(rows) > 1 else ''}{NEVER_LEFT})" if stayed else ""
+            return f" (drive.step_limit: {rows['steps'][these][0]}{rule})"
+        if name != Outcome.RETURNED.name.lower():
+            return ""
+        stayed = (rows["stands"] == rows["steps"])[these].sum()
+        return f" ({f'{stayed} ' if these.sum() > 1 else ''}{NEVER_LEFT})" if stayed else ""
 
 
 def usual_limit(fields: int) -> int:
@@ -316,15 +322,10 @@ def usual_limit(fields: int) -> int:
     return min(max(LEAST_STEPS, 2 * fields // 5), MOST_STEPS)
 
 
-def _calls(row: DriveRow) -> int:
-    """Count the calls of planners, whatever they are."""
-    return row.calls_a + row.calls_b + row.calls_c
+def _by_outcome(rows: Rows) -> dict[str, int]:
+    ended, names = rows["outcome"], [outcome.name.lower() for outcome in Outcome]
+    return {name: int((ended == name).sum()) for name in names}
 
 
-def _by_outcome(rows: list[DriveRow]) -> dict[str, list[DriveRow]]:
-    names = [outcome.name.lower() for outcome in Outcome]
-    return {name: [row for row in rows if row.outcome == name] for name in names}
-
-
-def _median_time(rows: list[DriveRow]) -> str:
-    return f"{1000 * statistics.median(row.compute_time_s for row in rows):.3g} ms"
+def _median_time(rows: Rows) -> str:
+    return f"{1000 * np.median(rows['compute_time_s']):.3g} ms"

@@ -1,11 +1,12 @@
 """The task to plan: trials are planning queries on a known map."""
 
 import math
-import statistics
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, ClassVar, Self
+
+import numpy as np
 
 from gapath.components import build
 from gapath.errors import require
@@ -17,7 +18,7 @@ from gapath.planning.simulation import plan_trials
 from gapath.problem import Plan, PlanStatus, Problem
 from gapath.querying.row import PlanRow, least_of, median_time, plan_values
 from gapath.querying.told import duration, trial_events
-from gapath.task import Batch, Trial, metrics
+from gapath.task import Batch, Rows, Trial, metrics
 
 _INFEASIBLE = PlanStatus.INFEASIBLE.name.lower()
 
@@ -111,61 +112,55 @@ class Task:
             events = partial(trial_events, answer, batch.seed)
             yield Trial(row, row.feasible, duration(answer.plan), events)
 
-    def summary(self, rows: list[PlanRow]) -> dict[str, object]:
+    def summary(self, rows: Rows) -> dict[str, object]:
         """Sum trials up for the terminal: label -> value."""
-        found = [row for row in rows if row.feasible]
-        if len(rows) == 1:
-            row = rows[0]
-            return {
-                "seed": row.seed,
-                "status": row.status,
-                **_effort(row),
-            }
-        lines: dict[str, object] = {
-            "trials": len(rows),
-            "found": f"{len(found)} ({100 * len(found) / len(rows):.1f} %)",
-        }
-        if rows[0].status != _INFEASIBLE:
-            lines["optimal cost"] = f"{rows[0].optimal_cost:g}"
+        found = rows["feasible"]
+        count = len(found)
+        if count == 1:
+            return {"seed": rows["seed"][0], "status": rows["status"][0], **_effort(rows)}
+        share = f"{found.sum()} ({100 * found.sum() / count:.1f} %)"
+        lines: dict[str, object] = {"trials": count, "found": share}
+        if rows["status"][0] != _INFEASIBLE:
+            lines["optimal cost"] = f"{rows['optimal_cost'][0]:g}"
             lines["median time"] = median_time(rows)
-        if found:
-            cost = statistics.median(row.cost for row in found)
-            lines["median cost"] = f"{cost:g}, if found"
-        if any(row.epochs for row in rows):
-            every = statistics.median(row.epochs for row in rows)
-            some = (
-                f"; {statistics.median(row.epochs for row in found):g}, if found" if found else ""
-            )
-            lines["median epochs"] = f"{every:g}{some}"
+        if found.any():
+            lines["median cost"] = f"{np.median(rows['cost'][found]):g}, if found"
+        epochs = rows["epochs"]
+        if epochs.any():
+            some = f"; {np.median(epochs[found]):g}, if found" if found.any() else ""
+            lines["median epochs"] = f"{np.median(epochs):g}{some}"
         return lines
 
-    def line(self, rows: list[PlanRow]) -> str:
+    def line(self, rows: Rows) -> str:
         """Sum trials up in one line."""
-        if rows[0].status == _INFEASIBLE:
-            return _no_path(rows[0])
-        found = sum(row.feasible for row in rows)
-        return f"{found} of {len(rows)} found, median {median_time(rows)}"
+        found = rows["feasible"]
+        if rows["status"][0] == _INFEASIBLE:
+            return _no_path(rows)
+        return f"{found.sum()} of {len(found)} found, median {median_time(rows)}"
 
 
-def _effort(row: PlanRow) -> dict[str, object]:
+def _effort(rows: Rows) -> dict[str, object]:
     """Tell what applies: a genetic algorithm has epochs, a graph search has expansions."""
-    if row.status == _INFEASIBLE:
-        return {"reason": _no_path(row)}
+    first = {name: rows[name][0] for name in ("status", "feasible", "cost", "optimal_cost")}
+    if first["status"] == _INFEASIBLE:
+        return {"reason": _no_path(rows)}
     lines: dict[str, object] = {}
-    if not math.isinf(row.cost):  # a search that counts no obstacles has no cost without a path
-        lines["cost" if row.feasible else "best cost"] = f"{row.cost:g}"
-    lines["optimal cost"] = f"{row.optimal_cost:g}"
-    if not math.isnan(length := row.metrics.get("line_length", math.nan)):
+    cost = first["cost"]
+    if not math.isinf(cost):  # a search that counts no obstacles has no cost without a path
+        lines["cost" if first["feasible"] else "best cost"] = f"{cost:g}"
+    lines["optimal cost"] = f"{first['optimal_cost']:g}"
+    length = rows["line_length"][0] if "line_length" in rows else math.nan
+    if not math.isnan(length):
         lines["length"] = f"{length:.1f} fields in straight lines"
-    if row.epochs:
-        lines |= {"epochs": row.epochs, "evaluations": row.evaluations}
-    if row.expansions:
-        lines["expansions"] = row.expansions
-    return lines | {"time": median_time([row])}
+    if epochs := rows["epochs"][0]:
+        lines |= {"epochs": epochs, "evaluations": rows["evaluations"][0]}
+    if expansions := rows["expansions"][0]:
+        lines["expansions"] = expansions
+    return lines | {"time": median_time(rows)}
 
 
-def _no_path(row: PlanRow) -> str:
-    if math.isinf(row.optimal_cost):
+def _no_path(rows: Rows) -> str:
+    if math.isinf(rows["optimal_cost"][0]):
         return "no path exists: the target cannot be reached from the start"
     return (
         "no path for the planner's robot and keypoints, one for a robot that is a point: try a "

@@ -1,13 +1,13 @@
 """The task to plan between many pairs of start and target on one known map, one after another."""
 
 import math
-import statistics
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gapath.components import build, typed
 from gapath.errors import Checks, InputError, require
@@ -32,7 +32,8 @@ from gapath.querying.row import PlanRow, least_of, median_time, plan_values
 from gapath.querying.told import duration, trial_events
 from gapath.scenario.drawn import draw_queries
 from gapath.scenario.listed import Queries
-from gapath.task import Batch, Trial, metrics
+from gapath.store.results import exact_sum
+from gapath.task import Batch, Rows, Trial, metrics
 
 _FIELDS_OF_A_BUCKET = 4
 """By so much MovingAI divides the optimal length, diagonals sqrt(2), for its buckets."""
@@ -247,33 +248,38 @@ class Task:
             bucket=_bucket(queries, asked),
         )
 
-    def summary(self, rows: list[ScenarioRow]) -> dict[str, object]:
+    def summary(self, rows: Rows) -> dict[str, object]:
         """Sum trials up for the terminal: label -> value."""
-        found = [row for row in rows if row.feasible]
+        found = rows["feasible"]
+        count = len(found)
         lines: dict[str, object] = {
             "problems": _problems(rows),
-            "trials": len(rows),
-            "found": f"{len(found)} ({100 * len(found) / len(rows):.1f} %)",
+            "trials": count,
+            "found": f"{found.sum()} ({100 * found.sum() / count:.1f} %)",
         }
-        if blocked := sum(math.isinf(row.optimal_cost) for row in rows):
+        if blocked := np.isinf(rows["optimal_cost"]).sum():
             lines["without a way"] = f"{blocked} of the trials"
-        ratios = [r.optimality_ratio for r in rows if not math.isnan(r.optimality_ratio)]
-        if ratios:
-            mean, most = statistics.fmean(ratios), max(ratios)
-            what = f"of the least {rows[0].minimises}, if found"
+        ratios = _known(rows["optimality_ratio"])
+        if len(ratios):
+            mean, most = exact_sum(ratios) / len(ratios), ratios.max()
+            what = f"of the least {rows['minimises'][0]}, if found"
             lines["ratio"] = f"mean {mean:.5g}, most {most:.5g} {what}"
-        spent = math.fsum(r.plan_time_s for r in rows if not math.isnan(r.plan_time_s))
+        spent = exact_sum(_known(rows["plan_time_s"]))
         return lines | {"time": f"{spent:.3g} s, median {median_time(rows)}"}
 
-    def line(self, rows: list[ScenarioRow]) -> str:
+    def line(self, rows: Rows) -> str:
         """Sum trials up in one line."""
-        found = sum(row.feasible for row in rows)
-        problems = _problems(rows)
-        return f"{found} of {len(rows)} found, {problems} problems, median {median_time(rows)}"
+        found, problems = rows["feasible"], _problems(rows)
+        told = f"{found.sum()} of {len(found)} found, {problems} problems"
+        return f"{told}, median {median_time(rows)}"
 
 
-def _problems(rows: list[ScenarioRow]) -> int:
-    return len({row.row for row in rows})
+def _problems(rows: Rows) -> int:
+    return len(np.unique(rows["row"]))
+
+
+def _known(column: NDArray[np.float64]) -> NDArray[np.float64]:
+    return column[~np.isnan(column)]
 
 
 def _ends(queries: Queries, index: int) -> tuple[Field, Field]:

@@ -104,7 +104,7 @@ def cut_short(run, monkeypatch, after, how="kill"):
         else:
             with pytest.raises(KeyboardInterrupt):
                 execute(run, "test", progress=False)
-    return len(progress.earlier(run_folder(run), run).trials)
+    return progress.earlier(run_folder(run), run).count
 
 
 def shown(path):
@@ -156,7 +156,7 @@ def test_a_run_that_was_cut_short_goes_on(name, how, made, done, monkeypatch):
         assert count <= after and (count == after or (how == "kill" and name != "rows"))
         numbers.clear()
         execution = execute(run, "test", progress=False, tell=told.append)
-        assert (len(execution.rows), outcome(run)) == (plain.trials, expected)
+        assert (len(execution.rows["trial"]), outcome(run)) == (plain.trials, expected)
         assert numbers == list(range(max(count - 1, 0), plain.trials))  # the last one once more
         assert [line.rpartition(": ")[2] for line in told] == (
             [f"goes on after trial {count - 1}, {count} of {plain.trials} are done"] * bool(count)
@@ -258,9 +258,9 @@ def test_a_last_trial_that_comes_to_something_else_takes_up_nothing(made, done, 
         chain.update(text + b"\n")
         altered += chain.hexdigest()[:16].encode() + b" " + text + b"\n"
     path.write_bytes(altered)
-    assert len(progress.earlier(run_folder(run), run).trials) == 5
+    assert progress.earlier(run_folder(run), run).count == 5
     numbers = done(PlanTask)
-    assert len(execute(run, "test", progress=False).rows) == 8
+    assert len(execute(run, "test", progress=False).rows["trial"]) == 8
     assert numbers == [4, *range(8)] and not run_folder(run).before.path.exists()
 
 
@@ -286,7 +286,7 @@ def test_other_versions_take_up_nothing(made, done, monkeypatch):
     run = made(*CASES["rows"])("cut")
     cut_short(run, monkeypatch, 5, "interrupt")
     monkeypatch.setattr(progress, "versions", lambda: {"numpy": "3.0"})
-    assert progress.earlier(run_folder(run), run).trials == []
+    assert not progress.earlier(run_folder(run), run).count
 
 
 def test_the_command_says_in_a_line_that_it_goes_on(gapath, monkeypatch):

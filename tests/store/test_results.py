@@ -16,7 +16,7 @@ numbers = st.floats(-1e100, 1e100) | st.just(math.nan)
 @given(st.lists(st.tuples(st.booleans(), numbers, st.integers(0, 2**50)), max_size=30))
 def test_sums_are_those_of_fractions_rounded_once(trials):
     success, cost, epochs = (np.array([row[i] for row in trials]) for i in range(3))
-    found = Results.of(success, {"cost": cost, "epochs": epochs})
+    found = Results.of(success, {"cost": cost, "epochs": epochs}.items())
     known = [value for _, value, _ in trials if not math.isnan(value)]
     assert (found.trials, found.succeeded) == (len(trials), sum(row[0] for row in trials))
     assert found.sums["cost"] == float(sum(map(Fraction, known)))
@@ -35,5 +35,5 @@ def test_sums_are_those_of_fractions_rounded_once(trials):
     ],
 )
 def test_what_has_no_finite_sum_ends_no_run(values, total):
-    found = Results.of(np.ones(len(values)), {"cost": values}).sums["cost"]
+    found = Results.of(np.ones(len(values)), [("cost", values)]).sums["cost"]
     assert found == total or (math.isnan(found) and math.isnan(total))

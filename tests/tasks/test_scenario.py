@@ -5,6 +5,7 @@ import json
 import math
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -21,12 +22,13 @@ from gapath.pipelines.reading.library import run as run_in
 from gapath.pipelines.report.stills import stills_of
 from gapath.planning.shortest_path import shortest_path
 from gapath.problem import Problem
+from gapath.querying.row import PlanRow
 from gapath.recorders.mcap import FILE, read_events
 from gapath.running.again import events_again, made_again
 from gapath.running.config import conf_folder, make_run
 from gapath.running.experiment import execute, run_folder
 from gapath.store.records import read_record
-from gapath.task import Batch
+from gapath.task import Batch, columns
 from gapath.tasks import scenario
 
 MAP = "type octile\nheight 6\nwidth 9\nmap\n" + "\n".join(
@@ -64,7 +66,14 @@ def run_of(*overrides):
 
 
 def rows_of(*overrides):
-    return execute(run_of("force=true", *overrides), "").rows
+    return rows_in(execute(run_of("force=true", *overrides), ""))
+
+
+def rows_in(execution):
+    """A run's rows, one by one."""
+    names, values = zip(*execution.rows.items(), strict=True)
+    trials = zip(*(column.tolist() for column in values), strict=True)
+    return [SimpleNamespace(**dict(zip(names, trial, strict=True))) for trial in trials]
 
 
 def test_a_row_of_the_file_is_a_row_with_its_own_problem(here):
@@ -79,7 +88,7 @@ def test_a_row_of_the_file_is_a_row_with_its_own_problem(here):
     for row in rows:
         feasible = row.feasible
         assert feasible == math.isfinite(row.optimal_cost) == (row.optimality_ratio == 1.0)
-        assert feasible == math.isfinite(row.plan_time_s) == math.isfinite(row.metrics["length"])
+        assert feasible == math.isfinite(row.plan_time_s) == math.isfinite(row.length)
 
 
 @pytest.mark.parametrize("rule", ["allow", "forbid"])
@@ -90,8 +99,9 @@ def test_a_row_is_what_a_run_of_its_own_is(here, rule):
         (alone,) = rows_of(
             "task=plan", "planner=astar_length", f"map.problem={number}", f"corner_cutting={rule}"
         )
-        mine = rows[number].values()
-        for name, value in alone.values().items():
+        mine = vars(rows[number])
+        for name in columns(PlanRow):
+            value = getattr(alone, name)
             if name not in ("trial", "experiment", "plan_time_s", "stage_times_s"):
                 assert mine[name] == value or (value != value and mine[name] != mine[name]), name
 
@@ -167,7 +177,7 @@ def test_the_log_holds_every_problem_and_does_it_again(here):
     assert [(e.trial, e.number, *e.start, *e.target) for e in posed] == [
         (2 * i + k, i, x, y, u, v) for i, (_, x, y, u, v, _) in enumerate(ROWS) for k in range(2)
     ]
-    for event, row in zip(posed, done.rows, strict=True):
+    for event, row in zip(posed, rows_in(done), strict=True):
         assert event.optimal_cost == row.optimal_cost
         assert len(event.optimal_path) > 0 or not row.feasible
 
@@ -276,7 +286,7 @@ def test_where_no_scenario_is_problems_are_drawn(here):
     assert len({(row.start, row.target) for row in rows}) == 12
     assert (rows[0].start, rows[0].target) == ("(0, 24)", "(98, 24)")  # the map's own
     assert all(row.feasible and math.isnan(row.published_length) for row in rows)
-    assert all(row.bucket == int(row.metrics["length"] / 4) for row in rows)
+    assert all(row.bucket == int(row.length / 4) for row in rows)
 
 
 def test_a_log_of_no_queries_has_none(here):

@@ -131,7 +131,8 @@ def time_logs(map_name: str, trials: int) -> Row:
         run = replace(make_drive_run(map_name, "kg18", trials), recorders=[log], output=folder)
         microseconds, execution = timed(lambda: execute(run, "", progress=False))
         size = (execution.folder / mcap.FILE).stat().st_size / 1e6
-    total, driving = microseconds / 1e6, sum(row.compute_time_s for row in execution.rows)
+        driving = float(execution.rows["compute_time_s"].sum())
+    total = microseconds / 1e6
     row: Row = {"map": map_name, "navigator": "kg18", "drives": trials}
     return row | {"total s": total, "driving s": driving, "rest s": total - driving, "log MB": size}
 

@@ -28,7 +28,8 @@ def _execute(run: Run, recorders: list[Recorder]) -> tuple[float, float]:
         begin = time.perf_counter()
         execution = execute(replace(run, recorders=recorders, output=folder), "", progress=False)
         seconds = time.perf_counter() - begin
-    return seconds, sum(row.plan_time_s for row in execution.rows)
+        planning = execution.rows["plan_time_s"].sum()
+    return seconds, float(planning)
 
 
 def _run(problem: Problem, name: str, trials: int, threads: int) -> Run:

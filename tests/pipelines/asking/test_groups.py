@@ -59,7 +59,7 @@ trials = st.lists(
 def test_groups_are_those_of_all_trials_together(runs):
     names = ("feasible", "evaluations", "plan_time_s", "length")
     tables = [pd.DataFrame(rows, columns=names) for _, _, rows in runs]
-    came = [Results.of(table["feasible"], dict(table[[*names[1:]]])) for table in tables]
+    came = [Results.of(table["feasible"], table[[*names[1:]]].items()) for table in tables]
     by = ["map", "planner.stop"]
     keys = pd.DataFrame([row[:2] for row in runs], columns=by).astype({"map": "str"})
     found = grouped(keys, came, by)

@@ -13,7 +13,7 @@ from gapath.kernels.rng import stream
 from gapath.planning.planner import Planner
 from gapath.planning.shortest_path import shortest_path
 from gapath.problem import Plan, Problem
-from gapath.task import Batch, Row, Trial, head
+from gapath.task import Batch, Row, Rows, Trial, head
 
 BACK = 1
 """Key of the random streams of ways back."""
@@ -85,13 +85,15 @@ class Task:
                                cost=first.cost + second.cost, seconds=seconds)  # fmt: skip
             yield Trial(row, found, 1, partial(told, batch.seed, trial, first))
 
-    def summary(self, rows: list[RoundTripRow]) -> dict[str, object]:
+    def summary(self, rows: Rows) -> dict[str, object]:
         """Sum rows up for the terminal: label -> value."""
-        return {"round trips": len(rows), "came back": sum(row.came_back for row in rows)}
+        came_back = rows["came_back"]
+        return {"round trips": len(came_back), "came back": came_back.sum()}
 
-    def line(self, rows: list[RoundTripRow]) -> str:
+    def line(self, rows: Rows) -> str:
         """Sum rows up in one line."""
-        return f"{sum(row.came_back for row in rows)} of {len(rows)} came back"
+        came_back = rows["came_back"]
+        return f"{came_back.sum()} of {len(came_back)} came back"
 
 
 def told(seed: int, trial: int, there: Plan, step: int) -> Iterator[Event]:
