@@ -6,17 +6,15 @@ import json
 import os
 from dataclasses import replace
 
-import pyarrow.parquet as pq
 import pytest
-from rerun.chunk import RrdReader
+from ending import outcome
 from test_experiment import ReadsLate, make_run
 
 from gapath.commands import run as cli
 from gapath.recorders.mcap import log
 from gapath.running import experiment, progress
 from gapath.running.experiment import execute, run_folder
-from gapath.store import whole
-from gapath.store.runfolder import BEFORE, PROGRESS, WORK
+from gapath.store.runfolder import PROGRESS
 from gapath.tasks.plan import Task as PlanTask
 
 SMALL = ("map=kg18_test3", "seed=3", "recorder=mcap")
@@ -107,37 +105,6 @@ def cut_short(run, monkeypatch, after, how="kill"):
     return progress.earlier(run_folder(run), run).count
 
 
-def shown(path):
-    """What a recording has but the identifiers, which no two share."""
-    chunks = RrdReader(str(path)).stream()
-    tables = [(each.entity_path, each.to_record_batch().to_pydict()) for each in chunks]
-    for _, table in tables:
-        table.pop("rerun.controls.RowId", None)
-    return sorted(map(str, tables))
-
-
-def outcome(run):
-    """All that a run's folder holds but times, and what depends on them."""
-    folder = run_folder(run)
-    assert whole.is_whole(folder, run.settings)
-    files = {path.name: path.read_bytes() for path in folder.path.iterdir()}
-    assert not {WORK, BEFORE, PROGRESS} & files.keys()
-    table = pq.read_table(folder.path / "trials.parquet")
-    kept = [name for name in table.column_names if not name.endswith("_s")]
-    files |= {name: shown(folder.path / name) for name in files if name.endswith(".rrd")}
-    files["trials.parquet"] = str(table.select(kept).to_pylist())
-    manifest = json.loads(files.pop("manifest.json"))
-    del manifest["provenance"]
-    for name in [name for name in files if name.endswith((".rrd", ".parquet"))]:
-        del manifest["files"][name]
-    del files["status.json"]
-    for sums in manifest["results"].values():
-        if isinstance(sums, dict):
-            for name in [name for name in sums if name.endswith("_s")]:
-                del sums[name]
-    return files, manifest
-
-
 ENDS = [(name, how) for name in CASES for how in ("kill", "interrupt")]
 ENDS.remove(("recordings", "kill"))  # Rerun takes no fork
 
@@ -147,7 +114,7 @@ def test_a_run_that_was_cut_short_goes_on(name, how, made, done, monkeypatch):
     run_in = made(*CASES[name])
     plain = run_in("plain")
     execute(plain, "test", progress=False)
-    expected, taken = outcome(plain), set()
+    expected, taken = outcome(run_folder(plain)), set()
     numbers = done(type(plain.task))
     for after in (1, plain.trials // 2 + 1, plain.trials):
         run, told = run_in(f"{how}-{after}"), []
@@ -156,7 +123,8 @@ def test_a_run_that_was_cut_short_goes_on(name, how, made, done, monkeypatch):
         assert count <= after and (count == after or (how == "kill" and name != "rows"))
         numbers.clear()
         execution = execute(run, "test", progress=False, tell=told.append)
-        assert (len(execution.rows["trial"]), outcome(run)) == (plain.trials, expected)
+        assert len(execution.rows["trial"]) == plain.trials
+        assert outcome(run_folder(run)) == expected
         assert numbers == list(range(max(count - 1, 0), plain.trials))  # the last one once more
         assert [line.rpartition(": ")[2] for line in told] == (
             [f"goes on after trial {count - 1}, {count} of {plain.trials} are done"] * bool(count)
@@ -174,7 +142,7 @@ def test_a_run_that_is_cut_short_time_and_again_never_goes_back(made, done, monk
         reached = count
     numbers = done(PlanTask)
     execute(run, "test", progress=False)
-    assert numbers == [6, 7] and outcome(run) == outcome(run_in("plain"))
+    assert numbers == [6, 7] and outcome(run_folder(run)) == outcome(run_folder(run_in("plain")))
 
 
 @pytest.mark.parametrize("whole_before", [False, True])
@@ -198,7 +166,7 @@ def test_force_takes_up_only_what_force_has_done(whole_before, made, done, monke
     numbers.clear()
     execute(forced, "test", progress=False)
     assert numbers == ([4, 5, 6, 7] if whole_before else [*range(8)])
-    assert outcome(run)
+    assert outcome(run_folder(run))
 
 
 def test_with_recordings_alone_all_is_done_anew(made, done, monkeypatch):
@@ -208,7 +176,9 @@ def test_with_recordings_alone_all_is_done_anew(made, done, monkeypatch):
     assert cut_short(run, monkeypatch, 3, "interrupt") == 0
     numbers.clear()
     execute(run, "test", progress=False)
-    assert numbers == [0, 1, 2, 3] and outcome(run) == outcome(run_in("plain"))
+    assert numbers == [0, 1, 2, 3] and outcome(run_folder(run)) == outcome(
+        run_folder(run_in("plain"))
+    )
 
 
 def changed(data):
@@ -224,7 +194,7 @@ def changed(data):
 def test_what_is_damaged_is_done_anew(name, made, done, monkeypatch):
     run_in = made("planner=astar", "trials=5")
     execute(run_in("plain"), "test", progress=False)
-    expected, run = outcome(run_in("plain")), run_in("cut")
+    expected, run = outcome(run_folder(run_in("plain"))), run_in("cut")
     counts = set()
     cut_short(run, monkeypatch, 4, "interrupt")
     work = run_folder(run).work.path
@@ -239,7 +209,7 @@ def test_what_is_damaged_is_done_anew(name, made, done, monkeypatch):
             (work / each).write_bytes(content)
         numbers.clear()
         execute(run, "test", progress=False)
-        assert outcome(run) == expected
+        assert outcome(run_folder(run)) == expected
         assert numbers[-1] == 4 and numbers == sorted(set(numbers))
         counts.add(numbers[0])
     assert min(counts) == 0 < max(counts) <= 3
