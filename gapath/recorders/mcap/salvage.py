@@ -29,7 +29,7 @@ from gapath.recorders.mcap.format import NS_PER_STEP, TOPICS
 from gapath.recorders.mcap.log import FILE, LogWriter
 from gapath.recorders.mcap.messages import event
 from gapath.recorders.mcap.reader import BEGUN, Head, read_events, refusing
-from gapath.store.durable import publish, scratch
+from gapath.store.durable import named, publish, scratch
 
 _HEAD = struct.Struct("<BQ")
 _MARK = struct.pack("<I", 4) + b"zstd"
@@ -74,14 +74,12 @@ def salvage(path: str | Path, output: str | Path, limits: Limits = LARGE) -> Sav
     Raises
     ------
     InputError
-        If there is nothing to save, or the output exists or has no folder.
-    OSError
-        If the output cannot be written.
+        If there is nothing to save, or the output exists, has no folder or cannot be written.
     """
     output = Path(output)
     require(output.parent.is_dir(), output, "no such folder", "a file in an existing folder")
     require(not output.exists(), output, "a file that exists", "a new name")
-    with scratch(output.parent) as folder:
+    with named(output), scratch(output.parent) as folder:
         whole = folder / FILE
         saved = _saved(path, whole, limits)
         deque(read_events(whole, limits), maxlen=0)
