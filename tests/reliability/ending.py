@@ -124,7 +124,6 @@ def outcome(folder):
     files |= {name: shown(folder.path / name) for name in files if name.endswith(".rrd")}
     files["trials.parquet"] = str(table.select(kept).to_pylist())
     manifest = json.loads(files.pop("manifest.json"))
-    del manifest["provenance"]
     for name in [name for name in files if name.endswith((".rrd", ".parquet"))]:
         del manifest["files"][name]
     del files["status.json"], manifest["provenance"]  # which has times, too
