@@ -135,8 +135,16 @@ def _no_inputs() -> list[Path]:
     places += [str(Path(os.__file__).parent), *_SYSTEM]  # the first: a virtual environment's base
     own = [_folder(package) for package in ("gapath", "gapath.pipelines", *conf_packages())]
     own += other_folders().values()
-    own += [Path(place) for place in sys.path if Path(place).name in _LIBRARIES]
+    for place in map(Path, sys.path):
+        own += [place] if place.name in _LIBRARIES else _installed(place)
     return [Path(place).resolve() for place in places] + [place.resolve() for place in own]
+
+
+def _installed(place: Path) -> list[Path]:
+    """Find the packages in a folder on Python's path that pip fills, as `--target` names it."""
+    if not any(place.glob("*.dist-info")):
+        return []
+    return [file.parent for file in place.glob("*/__init__.py")]
 
 
 def _folder(package: str) -> Path:

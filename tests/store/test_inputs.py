@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from gapath.store import inputs
 from gapath.store.inputs import contents, unchanged, watched, without_paths
 
 READ = [
@@ -65,6 +66,25 @@ def test_code_libraries_and_the_system_are_no_inputs(tmp_path, monkeypatch):
         if Path("/proc/self/status").exists():
             Path("/proc/self/status").read_text()
     assert found == {}
+
+
+@pytest.mark.parametrize("installed", [True, False])
+def test_data_of_a_package_that_pip_put_into_any_folder_on_the_path_is_no_input(
+    installed, tmp_path, monkeypatch
+):
+    (tmp_path / "package" / "data").mkdir(parents=True)
+    paths = [tmp_path / name for name in ("package/__init__.py", "package/data/k.map", "k.map")]
+    for path in paths:
+        path.write_text("1")
+    if installed:
+        (tmp_path / "package-1.0.dist-info").mkdir()
+    monkeypatch.syspath_prepend(tmp_path)
+    inputs._no_inputs.cache_clear()
+    with watched() as found:
+        for path in paths:
+            path.read_text()
+    inputs._no_inputs.cache_clear()
+    assert list(found) == [str(path) for path in (paths[2:] if installed else paths[1:])]
 
 
 def test_for_a_key_it_does_not_matter_where_a_file_lies():
