@@ -4,14 +4,10 @@ import os
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
+from installed import ROOT, copy_sources, install
 
-import gapath
-
-PACKAGE = Path(gapath.__file__).parent
-ROOT = PACKAGE.parent
 HASH = "from gapath.store.keys import code_hash; print(code_hash())"
 
 
@@ -28,14 +24,7 @@ def code_hash(place):
 @pytest.fixture(scope="module")
 def sources(tmp_path_factory):
     """Copy a checkout to where a folder above it has a name that the package uses itself."""
-    place = tmp_path_factory.mktemp("pipelines") / "conf" / "checkout"
-    place.mkdir(parents=True)
-    for name in ("gapath", "pipelines", "conf", "maps"):
-        ignore = shutil.ignore_patterns("__pycache__")
-        shutil.copytree(ROOT / name, place / name, symlinks=True, ignore=ignore)
-    for name in ("pyproject.toml", "README.md", "LICENSE"):
-        shutil.copy(ROOT / name, place)
-    return place
+    return copy_sources(tmp_path_factory.mktemp("pipelines") / "conf" / "checkout")
 
 
 @pytest.fixture(scope="module")
@@ -44,17 +33,7 @@ def unedited(sources):
 
 
 def test_a_wheel_and_a_checkout_have_the_same_hash_wherever_they_lie(sources, unedited, tmp_path):
-    pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "install", "--quiet"]
-    options = [
-        "--no-index",
-        "--no-deps",
-        "--no-build-isolation",
-        "--target",
-        str(tmp_path / "site"),
-    ]
-    copy = shutil.copytree(sources, tmp_path / "copy", symlinks=True)  # a build writes beside it
-    done = subprocess.run([*pip, *options, str(copy)], capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
+    install(shutil.copytree(sources, tmp_path / "copy", symlinks=True), tmp_path / "site")
     assert not (tmp_path / "site" / "gapath" / "pipelines").is_symlink()
     assert code_hash(tmp_path / "site") == unedited == code_hash(ROOT)
 

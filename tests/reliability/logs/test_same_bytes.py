@@ -4,7 +4,6 @@ Runs of every kind are done here and in processes of another hash seed, time zon
 processor; whatever differs is named. What golden hashes hold is in test_golden.
 """
 
-import hashlib
 import itertools
 import json
 import locale
@@ -13,9 +12,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pyarrow.parquet as pq
 import pytest
-from logs_of_runs import RUNS, log_of
+from logs_of_runs import RUNS, hashes, log_of
 from scale import rounds
 
 import gapath
@@ -31,24 +29,10 @@ PROCESSORS = {
     "numpy without vectors": {"NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4 AVX512_ICL AVX512_SPR"},
 }
 
-NOT_COMPARED = ("plan_time", "stage_times", "compute_time", "recorder.")
-
 
 def bytes_of(folder, which=RUNS, *more):
     """Hashes of the log and the rows of each run."""
-    hashes = {}
-    for name in which:
-        log = log_of(name, folder / name, *more)
-        table = pq.read_table(log.parent / "trials.parquet")
-        rows = [
-            {key: value for key, value in row.items() if not key.startswith(NOT_COMPARED)}
-            for row in table.to_pylist()
-        ]
-        hashes[name] = [
-            hashlib.sha256(log.read_bytes()).hexdigest(),
-            hashlib.sha256(repr(rows).encode()).hexdigest(),
-        ]
-    return hashes
+    return {name: hashes(log_of(name, folder / name, *more)) for name in which}
 
 
 def tell(folder):
