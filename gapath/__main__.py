@@ -4,8 +4,27 @@ What they import takes a second, so each imports its own only then.
 """
 
 import gc
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
 
 from gapath.commands.signals import watched
+
+
+@contextmanager
+def _begun(command: str) -> Iterator[None]:
+    """Watch for signals; exit with code 2 where there is no working directory.
+
+    Libraries ask for it while they are imported.
+    """
+    with watched(command):
+        try:
+            Path.cwd()
+        except OSError as error:
+            print(f"{command}: the working directory: {error.strerror}", file=sys.stderr)
+            sys.exit(2)
+        yield
 
 
 def main() -> None:
@@ -14,7 +33,7 @@ def main() -> None:
     Modules are some hundred thousand objects, none of them garbage. To look for garbage among
     them again and again takes an eighth of a short command's time.
     """
-    with watched("gapath"):
+    with _begun("gapath"):
         gc.disable()
         from gapath.commands.run import main as command
 
@@ -25,7 +44,7 @@ def main() -> None:
 
 def log() -> int:
     """Run the command `gapath.commands.log.main`."""
-    with watched("gapath-log"):
+    with _begun("gapath-log"):
         from gapath.commands.log import main as command
 
         return command()
@@ -33,7 +52,7 @@ def log() -> int:
 
 def report() -> int:
     """Run the command `gapath.pipelines.report.cli.main`."""
-    with watched("gapath-report"):
+    with _begun("gapath-report"):
         from gapath.pipelines.report.cli import main as command
 
         return command()
@@ -41,7 +60,7 @@ def report() -> int:
 
 def genotype() -> int:
     """Run the command `gapath.commands.genotype.main`."""
-    with watched("gapath-genotype"):
+    with _begun("gapath-genotype"):
         from gapath.commands.genotype import main as command
 
         return command()

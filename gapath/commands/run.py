@@ -221,7 +221,7 @@ def refuse(error: BaseException, words: Sequence[str], sweep: bool) -> int:
     line = None if inside else explain(error, words, sweep)
     if line is None and isinstance(error, OSError) and not inside:
         expected = "a file or folder that can be read, or written"
-        line = str(InputError(error.filename or "output", error.strerror, expected))
+        line = str(InputError(error.filename or "output", error.strerror or error, expected))
     if line is None:
         code = FAILED
         last = traceback.extract_tb(error.__traceback__)[-1]

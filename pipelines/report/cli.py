@@ -58,7 +58,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         if isinstance(error, BrokenPipeError):  # `gapath-report runs | head`
             sys.stderr.close()
             return 0
-        where, found = error.filename or "output", error.strerror or type(error).__name__
+        where, found = error.filename or "output", error.strerror or error
         right = "a file or folder that can be read, or written"
         print(f"gapath-report: {InputError(where, found, right)}", file=sys.stderr)
         return 2
