@@ -76,7 +76,8 @@ def cuts_corner(table: NDArray[np.int32], x0: int, y0: int, x1: int, y1: int, ru
         return False
     if rule == NO_DIAGONALS:
         return True
-    walls = (entry(table, x1, y0) >= OBSTACLE) + (entry(table, x0, y1) >= OBSTACLE)
+    walls = np.int64(entry(table, x1, y0) >= OBSTACLE)  # two truths of NumPy add up to one
+    walls += entry(table, x0, y1) >= OBSTACLE
     return too_narrow(walls, rule)
 
 
