@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 import gapath
 from gapath.components import build
 from gapath.discovery import yaml_values
-from gapath.pipelines.report.machine import processor
 from gapath.planners import bspline_ga, visibility_ga
 from gapath.planning.planner import Planner
 from gapath.problem import Problem
+from gapath.store.provenance.machine import processor
 
 MAPS = ("kg18_test1", "kg18_test2", "kg18_test3", "kg18_test4")
 SETTINGS = ("ga1", "ga2", "ga3")

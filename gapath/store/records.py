@@ -1,6 +1,7 @@
 """What a run folder says of its run: manifest, status, settings; and which folders there are."""
 
 import contextlib
+import glob
 import hashlib
 import os
 import stat
@@ -275,6 +276,35 @@ def _read(folder: Path) -> RunRecord:
 def is_run(folder: Path) -> bool:
     """Tell whether a folder is that of a run, whole or not."""
     return any((folder / mark).exists() for mark in (STATUS, MANIFEST, CONFIG, TRIALS))
+
+
+def find_run(outputs: Path, key: str) -> Path:
+    """Find one run's folder.
+
+    Parameters
+    ----------
+    outputs : Path
+        The folder that holds ``<experiment>/<key>/``.
+    key : str
+        The run's key, or so much of its beginning that no other run's begins alike.
+
+    Returns
+    -------
+    Path
+        Its folder.
+
+    Raises
+    ------
+    InputError
+        If there is no such run, or more than one.
+    """
+    require(outputs.is_dir(), outputs, "no such folder", "a folder with run folders")
+    require(key != "", "key", key, "the beginning of a run's key")
+    found = sorted(path for path in outputs.glob(f"*/{glob.escape(key)}*") if is_run(path))
+    names = [f"{path.parent.name}/{path.name}" for path in found]
+    require(bool(found), outputs, f"no run {key}...", "a key that `gapath-report runs` lists")
+    require(len(found) == 1, "key", f"{key}, the beginning of {', '.join(names)}", "a longer one")
+    return found[0]
 
 
 def find_runs(outputs: Path) -> list[RunRecord]:

@@ -95,9 +95,17 @@ class RunFolder:
             regular = stat.S_ISREG(os.fstat(lock).st_mode)
             require(regular, self.path / LOCK, "no regular file", "one, or none: a run makes it")
             self._hold(lock)
+            if not self._is_own(lock):
+                raise Busy(str(self.path))
             yield
         finally:
             os.close(lock)
+
+    def _is_own(self, lock: int) -> bool:
+        """Tell whether a lock is still the folder's: who removes a run removes it, too."""
+        with contextlib.suppress(OSError):
+            return os.path.samestat(os.fstat(lock), (self.path / LOCK).lstat())
+        return False
 
     def _hold(self, lock: int) -> None:
         """Take the lock; one that is only looked at (`is_locked`) is free in a moment."""

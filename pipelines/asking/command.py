@@ -17,6 +17,7 @@ from gapath.pipelines.asking.listing import METRICS, importance, listed, short_k
 from gapath.pipelines.asking.sql import asked
 from gapath.pipelines.reading.frame import described, matching
 from gapath.pipelines.reading.query import near
+from gapath.pipelines.reading.tags import said_of
 from gapath.store.records import RunRecord, find_runs
 
 
@@ -67,6 +68,8 @@ def main(arguments: Sequence[str]) -> None:
         require(getattr(given, name) is None, f"--{name}", "--sql, too", "only one of them")
     runs = find_runs(given.outputs)
     frame, came = described(runs)
+    for fault in said_of(runs)[1]:
+        print(fault, file=sys.stderr)
     places = _places(given, frame)
     if not places:
         print("no such runs", file=sys.stderr)

@@ -10,6 +10,9 @@ from gapath.store.status import WHOLE
 _SHORT = 6
 """Fewest characters of a key."""
 
+_COMMIT = r"^([0-9a-f]{8})[0-9a-f]{32}"
+"""A commit, and so much of its name as tells it."""
+
 METRICS = ("optimality_ratio", "evaluations", "plan_time_s", "length", "steps_ratio", "replans",
            "compute_time_s")  # fmt: skip
 """The results that a list shows, of those that its runs have."""
@@ -74,9 +77,17 @@ def listed(frame: pd.DataFrame, keys: Iterable[str]) -> pd.DataFrame:
     head = ["experiment", *(["task"] if _varies(known, "task") else []), *place, *shown, *method]
     head += ["seed"] if _varies(known, "seed") else []
     metrics = [name for name in METRICS if name in frame and frame[name].notna().any()]
-    tail = ["state", *(["superseded"] if frame["superseded"].notna().any() else []), "date"]
+    said = [name for name in ("superseded", "commit", "tags", "note") if frame[name].notna().any()]
+    if (frame["gapath_commit"].notna() & (frame["gapath_commit"] != frame["commit"])).any():
+        said.insert(said.index("commit") + 1 if "commit" in said else 0, "gapath_commit")
+    tail = ["state", *said, "date"]
     short = short_keys(keys)
     rows = frame[[*head, "trials", "success", *metrics, *tail]].assign(
+        **{
+            name: frame[name].str.replace(_COMMIT, r"\1", regex=True)
+            for name in said
+            if name.endswith("commit")
+        },
         date=frame["date"].str[:16].str.replace("T", " "),
         state=frame["state"].where(frame["fault"].isna() | ~frame["state"].isin(WHOLE), "unusable"),
     )
@@ -90,7 +101,8 @@ def importance(rows: pd.DataFrame) -> dict[str, int]:
     """Tell how important the columns of a list are: all that it may do without."""
     names = ("experiment", "task", "map", "preset", "method", "seed", "state")
     same = [name for name in names if name in rows and not _varies(rows, name)]
-    last = ["date", "start", "target", "trials", "seed", "superseded", "map_instance"]
+    last = ["note", "gapath_commit", "commit", "date", "start", "target", "trials", "seed"]
+    last += ["superseded", "map_instance", "tags"]
     best = ["task", "experiment", "state", "map", "method", "preset", "success"]
     settings = [name for name in rows if name not in ("key", *METRICS, *last, *best)]
     order = [*reversed(METRICS), *reversed(same), *last, *reversed(settings), *best]

@@ -8,11 +8,13 @@ from typing import Any
 import pandas as pd
 from tqdm import tqdm
 
-from gapath.errors import InputError
+from gapath.errors import InputError, printable
 from gapath.pipelines.reading.counted import superseded
 from gapath.pipelines.reading.names import told_apart
 from gapath.pipelines.reading.query import connect, quoted, refusal
 from gapath.pipelines.reading.results import results_of
+from gapath.pipelines.reading.tags import UNSAID, Said, said_of
+from gapath.store.provenance.git import commit_of
 from gapath.store.records import RunRecord
 from gapath.store.results import Results
 from gapath.store.settings import tabular
@@ -20,7 +22,8 @@ from gapath.store.settings import tabular
 _OWN = {
     "experiment": "str", "task": "str", "map": "str", "map_instance": "Int64", "start": "str",
     "target": "str", "method": "str", "preset": "str", "seed": "UInt64", "trials": "Int64",
-    "code": "str", "state": "str", "date": "str", "fault": "str", "superseded": "str",
+    "code": "str", "commit": "str", "gapath_commit": "str", "tags": "str", "note": "str",
+    "state": "str", "date": "str", "fault": "str", "superseded": "str",
 }  # fmt: skip
 """Columns that every frame has, and their types."""
 
@@ -44,6 +47,8 @@ def run_frame(runs: Sequence[RunRecord]) -> pd.DataFrame:
         - experiment, task, map, map_instance, start, target, method, preset, seed, trials, code
           (a hash of the sources), state and date, as the manifest and the status say, names of
           maps and methods told apart; of a run without a manifest what is known;
+        - commit, of the working directory, and gapath_commit, of gapath's own source, with
+          "-dirty" behind where files were changed; tags and note, what people say of it;
         - fault, why a run cannot be used, and superseded, the key of the run that counts in its
           place; null of all others;
         - every setting under its full name, lists as JSON, null where a run has none;
@@ -61,8 +66,9 @@ def described(runs: Sequence[RunRecord]) -> tuple[pd.DataFrame, list[Results | N
     settings = [_settings(run) for run, _ in pairs]
     runs = _named([run for run, _ in pairs])
     keys = pd.Index([run.folder.name for run in runs], dtype="str", name="key")
+    said, _ = said_of(runs)
     newer = {id(run): other.folder.name for run, other in superseded(runs)}
-    own = [_own(run) | {"superseded": newer.get(id(run))} for run in runs]
+    own = [_own(run, said) | {"superseded": newer.get(id(run))} for run in runs]
     means = [_means(results) if results else {} for results in came]
     columns: dict[str, Any] = {name: _column(own, name, kind) for name, kind in _OWN.items()}
     columns |= {name: _column(settings, name) for name in _names(settings) if name not in _SAID}
@@ -138,10 +144,18 @@ def _named(runs: Sequence[RunRecord]) -> list[RunRecord]:
     return [run if run.fault else next(names) for run in runs]
 
 
-def _own(run: RunRecord) -> dict[str, Any]:
+def _own(run: RunRecord, said: Mapping[str, Said]) -> dict[str, Any]:
     known: dict[str, Any] = {"experiment": run.folder.parent.name}
     if run.manifest:
-        known = {**vars(run.manifest), "code": run.manifest.versions.get("code")}
+        origin = run.manifest.provenance or {}
+        known = {
+            **vars(run.manifest),
+            "code": run.manifest.versions.get("code"),
+            "commit": commit_of(origin.get("directory")),
+            "gapath_commit": commit_of(origin.get("gapath")),
+        }
+    mine = said.get(run.name, UNSAID)
+    known |= {"tags": printable(", ".join(mine.tags)) or None, "note": printable(mine.note) or None}
     return {**known, "state": str(run.state), "date": run.date, "fault": run.fault or None}
 
 

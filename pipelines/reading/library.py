@@ -1,6 +1,5 @@
 """Runs for who works in Python: a table of them, and one run with all that it kept."""
 
-import glob
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -35,7 +34,7 @@ from gapath.problem import Plan, Problem, no_path
 from gapath.recorders.mcap import FILE
 from gapath.running.config import HOW, read_problem, split
 from gapath.running.naming import usual_values
-from gapath.store.records import RunRecord, find_runs, is_run, read_record
+from gapath.store.records import RunRecord, find_run, find_runs, is_run, read_record
 from gapath.store.settings import Value, nested, tabular
 from gapath.store.status import Status
 from gapath.task import Posing, find_task
@@ -114,12 +113,7 @@ def run(folder: str | Path, key: str | None = None) -> "Run":
         right = "the folder of a run, or that of all runs and the beginning of a key"
         require(is_run(place), folder, "no run", right)
         return Run(checked(read_record(place)))
-    require(key != "", "key", key, "the beginning of a run's key")
-    found = sorted(path for path in place.glob(f"*/{glob.escape(key)}*") if is_run(path))
-    names = [f"{path.parent.name}/{path.name}" for path in found]
-    require(bool(found), folder, f"no run {key}...", "a key that `gapath.runs` lists")
-    require(len(found) == 1, "key", f"{key}, the beginning of {', '.join(names)}", "a longer one")
-    return Run(checked(read_record(found[0])))
+    return Run(checked(read_record(find_run(place, key))))
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,9 +17,13 @@ commands:
                                    gapath-report runs --help
   gapath-report compare [OUTPUTS]  say which of two or more groups of runs is best, and from
                                    which others it can be told apart: compare --help
+  gapath-report tag KEY TEXT...    give a run tags; note KEY TEXT: a note
+  gapath-report prune [OUTPUTS]    list runs that can go, and remove them: prune --help
+  gapath-report archive EXPERIMENT FILE
+                                   pack an experiment's runs into one file
 
 Runs that cannot be used are named, with the reason, and left out. A folder that is itself
-called "runs" or "compare" is given as ./runs or ./compare.
+called "runs" or as another command is given as ./runs.
 """
 
 
@@ -48,6 +52,10 @@ def main(argv: Sequence[str] | None = None) -> int:
 
             with _no_collection():
                 comparing.run(arguments[1:])
+        elif arguments[:1] and arguments[0] in ("tag", "note", "prune", "archive"):
+            from gapath.pipelines.keeping import command as keeping
+
+            keeping.main(arguments)
         else:
             chosen = _report_parser().parse_args(arguments)
             _report(chosen.outputs, chosen.output or chosen.outputs / "report")

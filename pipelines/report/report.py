@@ -16,11 +16,12 @@ from gapath.errors import InputError, require
 from gapath.pipelines.page.page import Part, files_of, render
 from gapath.pipelines.page.section import ALL, find_sections
 from gapath.pipelines.reading.collect import Skipped, read_trials
+from gapath.pipelines.reading.tags import said_of
 from gapath.pipelines.report.bench import make_bench_page
 from gapath.pipelines.report.command import as_sweeps
-from gapath.pipelines.report.machine import processor
 from gapath.pipelines.report.run_pages import Addresses, write_run_pages
 from gapath.store.durable import write_whole
+from gapath.store.provenance.machine import processor
 from gapath.store.records import RunRecord, find_runs
 
 _PAPERS = {"kg18": "KG18", "s04": "S04", "m22": "M22", "field": "Many problems"}
@@ -93,7 +94,7 @@ def _runs_page(
     first = f"; {unusable[0].run}: {unusable[0].reason}" if unusable else ""
     require(count > 0, outputs, f"{len(runs)} runs of which none can be used"
             f"{first}", "a finished run")  # fmt: skip
-    skipped = skipped + unusable
+    skipped = skipped + unusable + [Skipped(each.where, str(each)) for each in said_of(runs)[1]]
     frames = list(trials.values())
     parts = []
     modules = find_sections()

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
+from typing import TypeAlias
 from urllib.parse import quote
 
 import numpy as np
@@ -15,14 +16,17 @@ import pyarrow as pa
 import pyarrow.csv
 from markupsafe import Markup
 
+from gapath.errors import printable
 from gapath.pipelines.numbers.text import file_size, number, percent
 from gapath.pipelines.page.page import script, style, template
 from gapath.pipelines.papers.names import label, rank
 from gapath.pipelines.reading.logs import has_log
+from gapath.pipelines.reading.tags import UNSAID, Said, said_of
 from gapath.pipelines.report.found_by import found_by
 from gapath.pipelines.report.stills import MOST_BYTES, MOST_RUNS, newest_logs, stills_of
 from gapath.recorders.mcap import FILE
 from gapath.store.durable import new_file, write_whole
+from gapath.store.provenance.origin import PACKAGES, Provenance
 from gapath.store.records import MANIFEST, RunRecord
 from gapath.store.settings import written
 from gapath.store.status import STATUS
@@ -94,7 +98,9 @@ def write_run_pages(
     written = [folder / "page.css", folder / "page.js"]
     for path, content in zip(written, (style(), script()), strict=True):
         write_whole(path, content.encode())
-    for name, text in chain(_pages(folder, runs, trials, rates), _lists(runs, rates, lists)):
+    said, _ = said_of(runs)
+    pages = chain(_pages(folder, runs, (trials, rates, said)), _lists(runs, rates, lists, said))
+    for name, text in pages:
         with new_file(folder / name) as file:
             file.write(text.encode())
         written.append(folder / name)
@@ -135,24 +141,25 @@ def _place(run: RunRecord) -> tuple[object, ...]:
 _COLUMNS = (
     ("Run", False), ("Experiment", False), ("Map", False), ("Instance", True), ("Method", False),
     ("Seed", True), ("Trials", True), ("Succeeded, %", True), ("State", False),
-    ("Finished, UTC", False),
+    ("Finished, UTC", False), ("Tags", False),
 )  # fmt: skip
 """Of a list of runs, and which hold numbers."""
 
 _ROW = Markup(
     '<tr><th scope="row" class="head own"><a href="{}">{}</a></th><td class="text">{}</td>'
     '<td class="text">{}</td><td>{}</td><td class="text">{}</td><td>{}</td><td>{}</td>'
-    '<td data-order="{}">{}</td><td class="text">{}</td><td class="text">{}</td></tr>'
+    '<td data-order="{}">{}</td><td class="text">{}</td><td class="text">{}</td>'
+    '<td class="text">{}</td></tr>'
 )
 
 
-def _row(run: RunRecord, rate: float) -> Markup:
+def _row(run: RunRecord, rate: float, said: Said) -> Markup:
     """Write the row of a run, which stands in several lists."""
     known = run.known
     return _ROW.format(
         _file(run.folder.name), run.folder.name[:8], known.experiment, label(known.map),
         known.map_instance, label(known.method), known.seed, known.trials, rate, percent(rate),
-        run.state, run.date[:19].replace("T", " "),
+        run.state, run.date[:19].replace("T", " "), printable(", ".join(said.tags)),
     )  # fmt: skip
 
 
@@ -160,12 +167,13 @@ def _lists(
     runs: Sequence[RunRecord],
     rates: Mapping[str, float],
     lists: Mapping[str, tuple[str, ...]],
+    said: Mapping[str, Said],
 ) -> Iterator[tuple[str, str]]:
     """Make the pages that list runs: some of them, and all."""
     page = template("runs.html.j2")
     runs = sorted(runs, key=_place)
     places = {run.folder.name: i for i, run in enumerate(runs)}
-    rows = [_row(run, rates[run.folder.name]) for run in runs]
+    rows = [_row(run, rates[run.folder.name], said.get(run.name, UNSAID)) for run in runs]
     names = [_name(run) for run in runs]
     yield "index.html", page.render(title="All runs", whole=True, rows=rows, columns=_COLUMNS)
     for name, keys in lists.items():
@@ -176,14 +184,13 @@ def _lists(
         yield name, page.render(title=title, rows=[rows[i] for i in mine], columns=_COLUMNS)
 
 
-def _pages(
-    folder: Path,
-    runs: Sequence[RunRecord],
-    trials: Mapping[str, pd.DataFrame],
-    rates: Mapping[str, float],
-) -> Iterator[tuple[str, str]]:
+_Known: TypeAlias = tuple[Mapping[str, pd.DataFrame], Mapping[str, float], Mapping[str, Said]]
+"""Trials of each task, success rate of each run, what people say of some."""
+
+
+def _pages(folder: Path, runs: Sequence[RunRecord], known_of: _Known) -> Iterator[tuple[str, str]]:
     """Make the page of each run."""
-    page = template("run.html.j2")
+    page, (trials, rates, said) = template("run.html.j2"), known_of
     rows = {key: table for task, frame in trials.items() for key, table in _rows(task, frame)}
     drawn = newest_logs(runs)
     here = folder.resolve()
@@ -203,7 +210,10 @@ def _pages(
             title=_name(run),
             key=key,
             experiment=known.experiment,
-            what=_what(run, methods[known.task], rates[key]),
+            what=[
+                *_what(run, methods[known.task], rates[key]),
+                *_said(said.get(run.name, UNSAID)),
+            ],
             command=known.command,
             log=shlex.quote(str(run.folder / FILE)) if has_log(run) else "",
             files=_files(run, place),
@@ -247,6 +257,11 @@ def _what(run: RunRecord, method: str, rate: float) -> list[tuple[str, str]]:
     return [(name, text.removesuffix("+00:00")) for name, text in what]
 
 
+def _said(said: Said) -> list[tuple[str, str]]:
+    tags = [(f"tag, {when[:10]}", printable(tag)) for tag, when in said.tags.items()]
+    return [*tags, ("note", printable(said.note))] if said.note else tags
+
+
 def _files(run: RunRecord, place: str) -> list[tuple[str, str, str]]:
     """Give name, address and size of a run's files."""
     files = list(run.known.files.items())[:_MOST_FILES]
@@ -264,7 +279,18 @@ def _provenance(run: RunRecord) -> list[tuple[str, str]]:
         *known.versions.items(),
         ("map's content, SHA-256", known.map_digest),
         *((f"{path}, SHA-256", digest) for path, digest in inputs.items()),
+        *_origin(known.provenance or {}),
     ]
+
+
+def _origin(origin: Provenance) -> Iterator[tuple[str, str]]:
+    """Tell where a run comes from; of what is installed only how much."""
+    for section, values in origin.items():
+        if section == PACKAGES:
+            yield section, f"{len(values)}, in {MANIFEST}"
+            continue
+        for name, value in list(values.items())[:_MOST_FILES]:
+            yield f"{section}, {name}", written(value)
 
 
 def _rows(task: str, trials: pd.DataFrame) -> Iterator[tuple[str, pa.Table]]:

@@ -14,7 +14,8 @@ from subprocess import DEVNULL, PIPE, Popen
 from threading import Timer
 from typing import NamedTuple
 
-from gapath.store.settings import Value
+from gapath.errors import printable
+from gapath.store.settings import Flat, Value
 
 MOST_DIFF = 1 << 18
 """Bytes of a diff that is kept: every run of a sweep has its own."""
@@ -63,6 +64,13 @@ class Tree(NamedTuple):
 
     said: dict[str, Value]
     diff: bytes = b""
+
+
+def commit_of(said: Flat | None) -> str | None:
+    """Name the commit of a tree as git does, with "-dirty" behind it if files were changed."""
+    if not said or not said.get("commit"):
+        return None
+    return printable(said["commit"]) + ("" if said.get("clean") else "-dirty")
 
 
 class _Silent(Exception):

@@ -20,6 +20,9 @@ DIFF, GAPATH_DIFF = "code.diff", "gapath.diff"
 """Files beside a run: what was changed in the repository of the working directory, and of gapath's
 own if that is another."""
 
+PACKAGES = "packages"
+"""The section with a value for each that is installed."""
+
 _PACKAGE = Path(__file__).resolve().parents[2]
 
 
@@ -91,7 +94,7 @@ def origin_of(asker: Flat) -> Origin:
         "gapath": {**source, "code": code_hash(), "edited": edited(code_hash())},
         "machine": machine(),
         "asker": dict(asker),
-        "packages": packages(),
+        PACKAGES: packages(),
     }
     return Origin(said, files, clocks.begun, clocks.used)
 
