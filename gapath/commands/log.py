@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import gapath
+from gapath.commands import crate
 from gapath.errors import InputError, printable, require
 from gapath.events import Event, Finished, RunFinished, RunStarted
 from gapath.recorders import mcap
@@ -40,7 +41,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     -------
     int
         Exit code: 0 for success, 1 if a log is not reproduced or the viewer failed, 2 for
-        bad input, 3 if a log is equal as far as it goes; of several logs the largest.
+        bad input, 3 if a log is equal as far as it goes; of several logs the largest. Of a crate
+        that is done again see `gapath.commands.crate`.
     """
     arguments = _parser().parse_args(argv)
     try:
@@ -97,6 +99,7 @@ def _parser() -> argparse.ArgumentParser:
     rerun.add_argument(
         "-o", dest="folder", type=Path, metavar="DIR", help="where to (default: beside FILE)"
     )
+    crate.add(commands)
     command("view", _view, "open a log's first trial, or a recording (.rrd), in the Rerun viewer")
     return parser
 

@@ -143,13 +143,13 @@ def _sealed(content: dict[str, Any]) -> bytes:
     return as_json(content | {_CHECK: hashlib.sha256(as_json(content)).hexdigest()})
 
 
-def contents(folder: Path, name: str) -> bytes:
-    """Read a small file of a run folder; raises InputError if it cannot be read."""
+def contents(folder: Path, name: str, most: int = _MOST) -> bytes:
+    """Read a small file of a folder; raises InputError if it cannot be read or is larger."""
     try:
         # As plain as can be, since a folder of runs has ten thousand of them.
         with open_regular(f"{folder}/{name}") as file:
             size = os.fstat(file.fileno()).st_size
-            require(size <= _MOST, name, f"{size} bytes", "the few kB that gapath writes")
+            require(size <= most, name, f"{size} bytes", "the few kB that gapath writes")
             return file.read()
     except FileNotFoundError as error:
         raise InputError(name, "no file", "a file, as every finished run has one") from error
