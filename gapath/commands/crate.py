@@ -100,9 +100,9 @@ def _runs(given: str, outputs: Path) -> list[RunRecord]:
     folder = Path(given)
     if folder.name == MANIFEST:
         folder = folder.parent
-    if "/" not in given and (outputs / given).is_dir():
+    if given and "/" not in given and (outputs / given).is_dir():
         folder = outputs / given
-    elif not folder.is_dir():
+    elif not given or not folder.is_dir():
         found = sorted(filter(is_run, outputs.glob(f"*/{glob.escape(given)}*"))) if given else []
         right = f"a run or an experiment in {outputs}, or its folder"
         if len(found) > 1:

@@ -4,6 +4,7 @@ Nothing is read that does not lie in its folder, and no link is followed.
 """
 
 import hashlib
+import os
 import re
 import stat
 from collections.abc import Mapping
@@ -61,8 +62,10 @@ def unpack(place: Path) -> list[PackedRun]:
     InputError
         If it is none, is too large, or a file is missing, another one, or lies elsewhere.
     """
-    require(place.is_dir(), place, "no such folder", f"the folder of a crate, with {METADATA}")
+    require(place.is_dir(), place, "no such folder", "the folder of a crate")
     folder = place.resolve()
+    right = "the folder of a crate, which has one"
+    require(os.path.lexists(folder / METADATA), place, f"no {METADATA} in it", right)
     try:
         entities = _entities(parsed(contents(folder, METADATA, MOST_METADATA), METADATA))
         files = {

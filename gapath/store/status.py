@@ -149,7 +149,7 @@ def contents(folder: Path, name: str, most: int = _MOST) -> bytes:
         # As plain as can be, since a folder of runs has ten thousand of them.
         with open_regular(f"{folder}/{name}") as file:
             size = os.fstat(file.fileno()).st_size
-            require(size <= most, name, f"{size} bytes", "the few kB that gapath writes")
+            require(size <= most, name, f"{size} bytes", f"at most {most}, as gapath writes it")
             return file.read()
     except FileNotFoundError as error:
         raise InputError(name, "no file", "a file, as every finished run has one") from error
