@@ -300,9 +300,13 @@ class Trial:
             for i, (function, line, old, new, tree) in enumerate(mutants(text)):
                 if i in drawn and self.survives(module, function, tree):
                     none = "" if self.tests(module.__file__, function)[0] else "  (no test)"
-                    lines.append(f"  {modules[name].relative_to(ROOT)}:{line}  {old} -> {new}{none}")
+                    lines.append(
+                        f"  {modules[name].relative_to(ROOT)}:{line}  {old} -> {new}{none}"
+                    )
             totals.update(tried=tried, survived=len(lines))
-            print(f"{name}: {tried} tried, {tried - len(lines)} killed", *lines, sep="\n", flush=True)
+            print(
+                f"{name}: {tried} tried, {tried - len(lines)} killed", *lines, sep="\n", flush=True
+            )
         killed = totals["tried"] - totals["survived"]
         print(f"all: {totals['tried']} tried, {killed} killed, {killed / totals['tried']:.1%}")
 
