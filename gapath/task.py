@@ -33,7 +33,6 @@ from gapath.store.results import Results
 Measure = Callable[[Problem, Plan], float]
 """Measures a path, whoever found it."""
 
-
 Rows: TypeAlias = Mapping[str, NDArray[Any]]
 """A run's rows by column, a value a trial: bool, int64, float64, uint64 (the seed), or str objects.
 A column is read when it is asked for, so rows of a million trials take the room of one."""

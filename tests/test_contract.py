@@ -248,12 +248,8 @@ def test_recording_changes_no_result(name, tmp_path):
         [components.build("recorder", yaml_values("recorder", name), "recorder")],
     ):
         folder = tmp_path / str(len(recorders))
-        execution = execute(
-            make_run(recorders, make_planner("ga1"), folder), "test", progress=False
-        )
-        rows.append(
-            [execution.rows[n].tolist() for n in ("status", "cost", "epochs", "evaluations")]
-        )
+        came = execute(make_run(recorders, make_planner("ga1"), folder), "test", False).rows
+        rows.append([came[name].tolist() for name in ("status", "cost", "epochs", "evaluations")])
     assert rows[0] == rows[1]
 
 

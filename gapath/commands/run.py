@@ -55,7 +55,7 @@ class OtherConfigurations(SearchPathPlugin):  # type: ignore[misc]
 
 
 class SweepCheck(Callback):  # type: ignore[misc]
-    """Checks every job of a sweep before the first one runs."""
+    """Checks every job of a sweep before the first one runs, and keeps none of those done."""
 
     def on_multirun_start(self, config: DictConfig, **kwargs: object) -> None:
         """Compose and check all jobs; exit with code 2 if any job's settings are wrong.
@@ -92,6 +92,10 @@ class SweepCheck(Callback):  # type: ignore[misc]
         loader.load_sweep_config = lambda config, words: (
             composed.pop(tuple(words), None) or compose(config, words)
         )
+
+    def on_job_end(self, config: DictConfig, job_return: Any, **kwargs: object) -> None:
+        """Let go of a job's configurations: Hydra keeps what it returned until a sweep ends."""
+        job_return.cfg = job_return.hydra_cfg = None
 
 
 def job(config: DictConfig) -> int:
