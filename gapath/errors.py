@@ -69,6 +69,12 @@ class InputError(ValueError):
         right = printable(_ENDS.sub(" ", expected))
         super().__init__(f"{_shown(where)}: got {found}, expected {right}")
 
+    def within(self, path: object) -> "InputError":
+        """Give the same error of what was found in a file, whose name it says once."""
+        named = self.where == str(path) or self.where.startswith(f"{path}: ")
+        where = self.where if named else f"{path}: {self.where}"
+        return InputError(where, self.value, self.expected)
+
     def __reduce__(self) -> tuple[type["InputError"], tuple[str, object, str]]:
         return type(self), (self.where, self.value, self.expected)
 

@@ -301,6 +301,14 @@ class Posing(Protocol):
 
 
 @runtime_checkable
+class Replanning(Protocol):
+    """A task whose trials plan more than once says how often."""
+
+    def most_plans(self, fields: int) -> int:
+        """Give how often a trial may call each of its planners, on a map of so many fields."""
+
+
+@runtime_checkable
 class Listing(Protocol):
     """A reader of maps whose format may come with pairs of start and target."""
 

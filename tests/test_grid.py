@@ -76,6 +76,14 @@ def test_a_map_cannot_be_changed_behind_its_back():
     assert grid.weights[0, 0] == 0.5
     with pytest.raises(ValueError, match="read-only"):
         grid.weights[0, 0] = 1.0
+    values.setflags(write=False)
+    assert GridMap("final", values).weights is values
+    of_bytes = np.frombuffer(values.tobytes()).reshape(2, 3)
+    assert GridMap("of bytes", of_bytes).weights is of_bytes
+    buffer = bytearray(values.tobytes())
+    for of_another in (np.frombuffer(buffer).reshape(2, 3), np.full((4, 3), 0.5)[::2]):
+        of_another.setflags(write=False)
+        assert not np.shares_memory(GridMap("of another", of_another).weights, of_another)
 
 
 def test_metres_point_up_by_hand():

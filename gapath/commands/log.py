@@ -230,7 +230,8 @@ def _compared(path: Path, arguments: argparse.Namespace) -> tuple[int, str]:
     if found.byte is not None and not others:
         return 1, f"differs from byte {found.byte} on, though all of its {count} are equal"
     level = "byte for byte" if found.byte is None else "every message"
-    told = "; ".join(filter(None, [f"{level}, {count}", made_with(others), *remarks]))
+    rest = f"its last {found.torn} bytes are of no whole chunk" if found.torn else ""
+    told = "; ".join(filter(None, [f"{level}, {count}", rest, made_with(others), *remarks]))
     if found.ended and not found.lost.messages:
         return 0, f"reproduced, {told}"
     until = "in its first trial" if found.trial is None else f"after trial {found.trial}"

@@ -170,7 +170,7 @@ def typed(hydra: DictConfig) -> list[str]:
 
 def work_of(run: Run) -> int:
     """Bound what each trial of a run does."""
-    return work(run.settings, run.task.groups, run.problem.map.weights.size)
+    return work(run.task, run.settings, run.problem.map.weights.size)
 
 
 def warn(line: str | None) -> None:

@@ -13,21 +13,17 @@ from gapath.components import checked, normalised
 from gapath.discovery import load, reader_of, yaml_names, yaml_values
 from gapath.errors import InputError, require
 from gapath.events import Event, RunFinished, RunStarted
-from gapath.grid import Field
+from gapath.grid import Field, GridMap
 from gapath.planning.acceleration import AUTO, with_kernels
 from gapath.problem import CornerCutting, Plan, Problem
 from gapath.running.config import Root, first_of, read_problem, settings_of, split
 from gapath.running.naming import Method, changes_of, map_name, usual_values
-from gapath.running.work import work as of_a_trial
 from gapath.store.settings import flatten, nested
 from gapath.task import Batch, Posing, Task, find_task
 
 _HOW = {"recorder": {}, "output": "-", "force": False, "threads": 1, "kernels": AUTO}
 _HOW |= {"provenance": False}
 """What a log does not say, since it changes nothing in it."""
-
-MOST_WORK = 10**9
-"""Individuals tried, or fields searched, that take some minutes; more is asked for."""
 
 
 class Again(NamedTuple):
@@ -86,9 +82,11 @@ def made_again(logged: RunStarted, kernels: str = AUTO) -> Again:
         raise InputError(where, error.value, error.expected) from error
     method, remark = _method(task, settings, logged.method)
     optimum = task.optimum(problem)
-    settings["recorder"] = recorder
     if recorder is None:
         del settings["recorder"]
+    else:
+        settings["recorder"] = recorder
+        remarks.append("the settings of its recorders are its author's")
     started = RunStarted(
         root.name,
         method,
@@ -110,30 +108,30 @@ def _problem(
     """Pose the problem; a file of the user's is not read, its map is the log's."""
     own = settings["map"]
     _check_maps(settings, task, logged)
-    told = [f"{name}, its name and source, is what the log has" for name in logged.maps]
+    maps, told = _known(settings, logged)
     if "path" not in own:
         size, there = (own.get("width"), own.get("height")), (logged.map.cols, logged.map.rows)
         fits = None in size or size == there
         require(fits, "map.width, map.height", size, f"{there}, as the log's map is")
-        return read_problem(root, task, logged.maps), told
+        return read_problem(root, task, maps), told
     rule = CornerCutting.named(root.corner_cutting)
     kind, path, grid = own["kind"], str(own["path"]), logged.map
     if load("map", kind).__module__.startswith("gapath.mapio."):
         kind = reader_of(path, "map.path") if kind == "file" else kind
-        grid = replace(grid, name=map_name(Path(path).stem, own), source=kind)
+        grid = replace(grid, name=map_name(Path(path).stem, own), source=kind, instance=0)
     start = _field(own.get("start")) or grid.start
     target = _field(own.get("target")) or grid.target
     grid = replace(grid, start=start, target=target)
-    whole = "its instance, start, target and problems"
+    whole = "its start, target and problems"
     remarks = [f"the map {grid.name}, {whole}, is what the log has of {path}", *told]
     if isinstance(task, Posing):
         queries = logged.queries
         if queries is None or not len(queries):
             raise InputError("map", "no queries", "those that the task asks")
-        return first_of(queries, grid, rule, logged.maps), remarks
+        return first_of(queries, grid, rule, maps), remarks
     if start is None or target is None:
         raise InputError("map", "no start or target", "both")
-    return Problem(grid, start, target, rule, logged.maps, grid.published_length), remarks
+    return Problem(grid, start, target, rule, maps, grid.published_length), remarks
 
 
 def _check_maps(settings: Mapping[str, Any], task: Task, logged: Problem) -> None:
@@ -146,6 +144,19 @@ def _check_maps(settings: Mapping[str, Any], task: Task, logged: Problem) -> Non
         if isinstance(value, str) and Path(value).suffix
     }
     require(named == {*logged.maps}, "maps", sorted(logged.maps), f"those of {sorted(named)}")
+
+
+def _known(settings: Mapping[str, Any], logged: Problem) -> tuple[dict[str, GridMap], list[str]]:
+    """Give what else the task read, under the names that its files have, and say what it is."""
+    maps, told = {}, []
+    for name, grid in logged.maps.items():
+        group, _, rest = name.partition(".")
+        path = str(flatten(settings[group])[rest])
+        kind = reader_of(path, name)
+        own = load("map", kind).__module__.startswith("gapath.mapio.")
+        maps[name] = replace(grid, name=Path(path).stem, source=kind, instance=0) if own else grid
+        told.append(f"{name} is what the log has of {path}")
+    return maps, told
 
 
 def _field(value: Any) -> Field | None:
@@ -200,20 +211,3 @@ def events_again(again: Again, left_out: tuple[int, ...] = ()) -> Iterator[Event
         step += trial.steps
         found += trial.found
     yield RunFinished(step, run.trials, found)
-
-
-def work(again: Again) -> int:
-    """Estimate how much a run would do at most: individuals tried and fields searched.
-
-    Parameters
-    ----------
-    again : Again
-        The run.
-
-    Returns
-    -------
-    int
-        Some millions of them take a second.
-    """
-    run = again.started
-    return run.trials * of_a_trial(run.settings, again.task.groups, run.problem.map.weights.size)

@@ -9,8 +9,12 @@ from gapath.errors import FAULTS, InputError, require
 from gapath.events import Event, RunStarted
 from gapath.planning.acceleration import AUTO
 from gapath.recorders import mcap
-from gapath.running import again as running
+from gapath.running.again import Again, events_again, made_again
+from gapath.running.work import work
 from gapath.store.keys import versions
+
+MOST_WORK = 10**9
+"""Individuals tried, and fields searched, that take some minutes; more is asked for."""
 
 
 class Elsewhere(InputError):
@@ -69,22 +73,21 @@ def verify(
 
     def again(logged: RunStarted) -> Iterator[Event]:
         try:
-            made = running.made_again(logged, kernels)
+            made = made_again(logged, kernels)
         except InputError as error:
-            found = Elsewhere(f"{path}: {error.where}", error.value, error.expected)
+            told = error.within(path)
+            found = Elsewhere(told.where, told.value, told.expected)
             found.others = _others(logged)
-            raise (found if found.others else _at(path, error)) from error
+            raise (found if found.others else told) from error
         except FAULTS as error:  # of a component whose settings are anybody's
             raise _fault(path, error) from error
         try:
             remarks.extend(made.remarks)
-            work = running.work(made)
-            much = f"a run of {logged.trials} trials, up to {work:.1e} individuals and fields"
-            right = f"at most {running.MOST_WORK:.0e}, or --yes to do it"
-            require(much_work or work <= running.MOST_WORK, "work", much, right)
-            yield from running.events_again(made)
+            if not much_work:
+                _check_work(made, path, limits)
+            yield from events_again(made)
         except InputError as error:
-            raise _at(path, error) from error
+            raise error.within(path) from error
         except FAULTS as error:
             raise _fault(path, error) from error
 
@@ -95,8 +98,19 @@ def verify(
     return Verified(found, others, remarks)
 
 
-def _at(path: Path, error: InputError) -> InputError:
-    return InputError(f"{path}: {error.where}", error.value, error.expected)
+def _check_work(made: Again, path: Path, limits: mcap.Limits) -> None:
+    """Raise InputError if it may take long to do again what is in a log.
+
+    A trial that does more than the log says differs from it, and is the last one that is done.
+    """
+    run = made.started
+    each = work(made.task, run.settings, run.problem.map.weights.size)
+    most = run.trials * each
+    if most > MOST_WORK:
+        told = (1 + plan.evaluations + plan.expansions for plan in mcap.answers(path, limits))
+        most = min(most, each + sum(told))
+    much = f"up to {most:.1e} individuals and fields in what the log has"
+    require(most <= MOST_WORK, "work", much, f"at most {MOST_WORK:.0e}, or --yes to do it")
 
 
 def _fault(path: Path, error: BaseException) -> InputError:
@@ -113,5 +127,5 @@ def _others(run: RunStarted) -> dict[str, tuple[str, str]]:
 def made_with(others: Mapping[str, tuple[str, str]]) -> str:
     """Say with which versions a log was made that are not those here; nothing if there are none."""
     told = [f"{name} {then} ({now or 'none'} here)" for name, (then, now) in others.items() if then]
-    told += [f"unknown {name}" for name, (then, _) in others.items() if not then]
+    told += [f"no version of {name} told" for name, (then, _) in others.items() if not then]
     return f"made with {', '.join(told)}" if told else ""

@@ -4,33 +4,38 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from gapath.store.settings import Flat, nested
+from gapath.task import Replanning, Task
 
 MUCH = 10**10
-"""Individuals tried and fields searched that take an hour or more, at some millions a second."""
+"""Individuals tried and fields searched that may take an hour."""
 
-_COUNTS = ("population", "max_epochs", "iterations", "tries", "effort", "step_limit")
+_A_SECOND = 4 * 10**6  # individuals of GA 3; A* searches 10^7 fields
+
+_COUNTS = ("population", "max_epochs", "iterations", "tries", "effort")
 """Settings whose product bounds what a planner tries each time it plans."""
 
 
-def work(settings: Flat, groups: Iterable[str], fields: int) -> int:
-    """Bound what a trial does each time it plans.
+def work(task: Task, settings: Flat, fields: int) -> int:
+    """Bound what a trial does.
 
     Parameters
     ----------
+    task : Task
+        Its task.
     settings : mapping
         Flat settings of a run.
-    groups : iterable of str
-        The groups of its task (`gapath.task.Task.groups`).
     fields : int
         Of the map.
 
     Returns
     -------
     int
-        Individuals that its planners try at most, and fields that are searched.
+        Individuals that its planners try at most, and fields that are searched: all planners that
+        it has, as often as it may plan.
     """
     given = nested(settings)
-    return fields + sum(_tried(given.get(group)) for group in groups)
+    once = fields + sum(_tried(given.get(group)) for group in task.groups)
+    return once * (task.most_plans(fields) if isinstance(task, Replanning) else 1)
 
 
 def _tried(settings: Any) -> int:
@@ -62,9 +67,9 @@ def told(works: Iterable[tuple[int, int]]) -> str | None:
     total = sum(trials * each for trials, each in works)
     if total < MUCH:
         return None
-    trials = sum(trials for trials, _ in works)
-    each = max(each for _, each in works)
+    trials, each = sum(trials for trials, _ in works), max(each for _, each in works)
     return (
-        f"{trials} trials, each of up to {each:.2g} individuals and fields whenever it plans: "
-        "this may take hours; Control-C ends it"
+        f"{trials} trials of up to {each:.2g} individuals and fields each: up to "
+        f"{total / _A_SECOND / 3600:.2g} hours at some millions a second, less where epochs end "
+        "early and drives seldom plan; Control-C ends it"
     )

@@ -88,12 +88,16 @@ class RunFolder:
         InputError
             If it cannot be written, or its file system has no locks.
         """
+        place = self.path / LOCK
+        other = InputError(place, "a link, folder, pipe or device", "none, or a run's own file")
         with self._named():
+            if os.path.lexists(place) and not stat.S_ISREG(os.lstat(place).st_mode):
+                raise other
             flags = os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK
-            lock = os.open(self.path / LOCK, flags, 0o666)
+            lock = os.open(place, flags, 0o666)
         try:
-            regular = stat.S_ISREG(os.fstat(lock).st_mode)
-            require(regular, self.path / LOCK, "no regular file", "one, or none: a run makes it")
+            if not stat.S_ISREG(os.fstat(lock).st_mode):
+                raise other
             self._hold(lock)
             if not self._is_own(lock):
                 raise Busy(str(self.path))

@@ -233,10 +233,14 @@ class Task:
             self.changes,
             seed,
             trial,
-            min(most_steps, self.step_limit or usual_limit(problem.map.weights.size)),
+            min(most_steps, self.most_plans(problem.map.weights.size)),
             self.unknown_weight,
             problem.maps.get(KNOWN),
         )
+
+    def most_plans(self, fields: int) -> int:
+        """Give the most steps of a drive (`gapath.task.Replanning`)."""
+        return self.step_limit or usual_limit(fields)
 
     def summary(self, rows: Rows) -> dict[str, object]:
         """Sum drives up for the terminal: label -> value."""

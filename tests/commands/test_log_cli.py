@@ -115,7 +115,7 @@ def replay(monkeypatch):
 
 
 VERSIONS = "made with gapath 0.1.0 ({gapath} here), ".format(**versions()) + ", ".join(
-    f"unknown {name}" for name in versions() if name != "gapath"
+    f"no version of {name} told" for name in versions() if name != "gapath"
 )
 
 

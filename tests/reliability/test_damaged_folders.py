@@ -143,9 +143,13 @@ def test_folders_and_locks_that_are_links_are_refused_or_go(tmp_path):
     folder.unlink()
     folder.mkdir()
     (folder / LOCK).symlink_to(other / "manifest.json")
-    with pytest.raises(InputError, match="expected a folder that can be written"):
+    with pytest.raises(InputError, match=r"run\.lock: got a link"):
         execute(run, "test")
     (folder / LOCK).unlink()
+    (folder / LOCK).mkdir()
+    with pytest.raises(InputError, match=r"run\.lock: got .*folder"):
+        execute(run, "test")
+    (folder / LOCK).rmdir()
     (folder / "run.part").symlink_to(other)
     assert execute(run, "test").state == "done"
     assert [path.name for path in other.iterdir()] == ["manifest.json"]
@@ -176,7 +180,7 @@ def test_pipes_and_devices_are_no_files(name, kind, run):
         assert bool(read_record(folder.path).fault) == (name != LOCK)
         assert is_whole(folder, run.settings) == (name == LOCK)
         if name == LOCK:
-            with pytest.raises(InputError, match="got"):
+            with pytest.raises(InputError, match=r"run\.lock: got"):
                 execute(replace(run, force=True), "test")
         else:
             assert execute(run, "test").state == "done"

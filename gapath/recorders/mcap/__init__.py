@@ -4,7 +4,7 @@ from gapath.recorders.mcap.compare import Comparison, compare
 from gapath.recorders.mcap.description import LOG_VERSION, Lost
 from gapath.recorders.mcap.file.walk import LARGE, USUAL, Limits
 from gapath.recorders.mcap.log import FILE, Recorder
-from gapath.recorders.mcap.reader import look, read_events, read_prefix
+from gapath.recorders.mcap.reader import answers, look, read_events, read_prefix
 from gapath.recorders.mcap.salvage import Saved, salvage
 from gapath.recorders.mcap.sound import read_sound
 
@@ -18,6 +18,7 @@ __all__ = [
     "Lost",
     "Recorder",
     "Saved",
+    "answers",
     "compare",
     "look",
     "read_events",

@@ -7,6 +7,7 @@ import hashlib
 import io
 import json
 import math
+import re
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -212,8 +213,8 @@ def run_started(text: Mapping[str, str], files: Sequence[Stored]) -> RunStarted:
         trials=told("trials", int),
         settings=settings,
         versions={
-            name.removeprefix(_VERSION_OF): version
-            for name, version in text.items()
+            name.removeprefix(_VERSION_OF): told(name, _version)
+            for name in text
             if name.startswith(_VERSION_OF)
         },
         optimal_path=arrays[OPTIMAL_PATH],
@@ -283,6 +284,12 @@ def _names(text: str) -> list[str]:
     names: list[str] = json.loads(text)
     assert isinstance(names, list) and all(isinstance(name, str) for name in names)
     return names
+
+
+def _version(text: str) -> str:
+    """Read a version, which is said beside what was found: no sentence, and not empty."""
+    assert re.fullmatch(r"[\w.+!-]{1,99}", text, re.ASCII)
+    return text
 
 
 def _pose(text: str) -> tuple[float, float, float]:

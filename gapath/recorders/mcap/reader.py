@@ -12,10 +12,11 @@ from typing import IO, TypeVar
 from mcap.records import Channel, Message, Metadata
 
 from gapath.errors import InputError, require
-from gapath.events import Event, RunStarted
+from gapath.events import Called, Event, RunStarted, TrialFinished
+from gapath.problem import Answer
 from gapath.recorders.mcap import description
 from gapath.recorders.mcap.file.stored import Stored
-from gapath.recorders.mcap.file.walk import LARGE, Limits, entries, opened
+from gapath.recorders.mcap.file.walk import LARGE, Limits, Walk, opened
 from gapath.recorders.mcap.format import NS_PER_STEP
 from gapath.recorders.mcap.messages import event
 
@@ -151,9 +152,37 @@ def look(path: str | Path, limits: Limits, seen: Counter[str]) -> Iterator[Event
         yield from _events(file, limits, wanted)
 
 
+def answers(path: str | Path, limits: Limits) -> Iterator[Answer]:
+    """Give what planners answered, up to where a log is cut off or damaged.
+
+    Parameters
+    ----------
+    path : str or Path
+        A log written by `Recorder`, or what was left of one.
+    limits : Limits
+        What it may take.
+
+    Yields
+    ------
+    Answer
+        Of each trial that ended, and of each call in a drive.
+
+    Raises
+    ------
+    InputError
+        If not even the run's first event is whole.
+    """
+    with refusing(path, BEGUN), opened(path) as file:
+        for event in _until_damage(_events(file, limits, _ANSWERS.__contains__)):
+            if isinstance(event, TrialFinished | Called):
+                yield event.answer
+
+
 RUN_END = "/run_end"
 ENDS = ("/result", "/drive_end")
 """Topics of the last messages of a run, and of trials."""
+
+_ANSWERS = ("/result", "/planner_call")
 
 
 def _has_begun(path: str | Path, limits: Limits) -> bool:
@@ -170,7 +199,7 @@ def _events(
     """Give the run's first event, then those of all messages of wanted topics."""
     head, topics = Head(), dict[int, str]()
     started, count = False, 0
-    for entry in entries(file, limits):
+    for entry in Walk(file, limits).entries():
         if isinstance(entry, Message):
             require(started, "metadata", "none before the first message", "a run's description")
             if entry.sequence != count:
@@ -205,8 +234,7 @@ def refusing(path: str | Path, expected: str) -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        where = error.where.removeprefix(f"{path}: ")
-        raise InputError(f"{path}: {where}", error.value, error.expected) from error
+        raise error.within(path) from error
     except OSError as error:
         raise InputError(path, error.strerror or error, "a readable file") from error
     except Exception as error:

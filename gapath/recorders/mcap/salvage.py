@@ -89,7 +89,9 @@ def salvage(path: str | Path, output: str | Path, limits: Limits = LARGE) -> Sav
 
 def _saved(path: str | Path, whole: Path, limits: Limits) -> Saved:
     """Write what is whole; here, so that its map is gone when another reads it back."""
-    with opened_regular(path) as file:
+    with refusing(path, BEGUN):  # what goes wrong later is not the damaged log's fault
+        file = opened(path)
+    with file:
         with refusing(path, BEGUN):
             try:
                 head, run, place = _begin(file, limits)
@@ -107,15 +109,6 @@ def _saved(path: str | Path, whole: Path, limits: Limits) -> Saved:
             new.flush()
             os.fsync(new.fileno())
     return Saved(count, lost)
-
-
-@contextlib.contextmanager
-def opened_regular(path: str | Path) -> Iterator[IO[bytes]]:
-    """Open the damaged log; what goes wrong later is not its fault."""
-    with contextlib.ExitStack() as stack:
-        with refusing(path, BEGUN):
-            file = stack.enter_context(opened(path))
-        yield file
 
 
 def _begin(file: IO[bytes], limits: Limits) -> tuple[Head, RunStarted, int]:

@@ -1,12 +1,15 @@
 """Small runs of every kind, and what is said of their logs."""
 
 import hashlib
+import re
 
+import numpy as np
 import pyarrow.parquet as pq
 from hydra import compose, initialize_config_dir
 from omegaconf import OmegaConf
 
 from gapath.commands import log as log_cli
+from gapath.recorders.mcap import salvage
 from gapath.running.config import conf_folder, make_run
 from gapath.running.experiment import execute
 
@@ -27,10 +30,57 @@ PAPERS = {
 
 NOT_COMPARED = ("plan_time", "stage_times", "compute_time", "recorder.")
 
+OF_FILES = {
+    "image": ["map=image", "map.path={folder}/floor.pgm", "map.start=[0,0]", "map.target=[19,9]",
+              "planner=ga1", "planner.population=6", "planner.max_epochs=3"],
+    "known": ["task=drive", "map=image", "map.path={folder}/floor.pgm", "map.start=[0,0]",
+              "map.target=[19,9]", "navigator=replan_astar", "drive.step_limit=30",
+              "drive.known_map={folder}/known.map"],
+    "listed": ["task=scenario", "map=movingai", "map.path={folder}/known.map", "planner=astar",
+               "map.scenario={folder}/known.map.scen", "corner_cutting=forbid"],
+}  # fmt: skip
+"""Of maps, known maps and scenarios of somebody's own."""
+
+BROKEN = ("saved", "interrupted")
+"""What is whole of a log with a damaged chunk, and of one that was cut off."""
+
+
+def write_files(folder):
+    """Make a picture, a map of the same size, and problems on that."""
+    floor = np.full((10, 20), 128, dtype=np.uint8)
+    floor[2:8, 9] = 255
+    (folder / "floor.pgm").write_bytes(b"P5 20 10 255\n" + floor.tobytes())
+    rows = "\n".join("." * 9 + "@" + "." * 10 if 1 < y < 6 else "." * 20 for y in range(10))
+    (folder / "known.map").write_text(f"type octile\nheight 10\nwidth 20\nmap\n{rows}\n")
+    problems = [(0, 0, 19, 9, 21.0), (3, 9, 12, 1, 12.5)]
+    lines = [f"0\tknown.map\t20\t10\t{x}\t{y}\t{u}\t{v}\t{d}" for x, y, u, v, d in problems]
+    (folder / "known.map.scen").write_text("version 1\n" + "\n".join(lines) + "\n")
+
+
+def broken_log_of(name, folder):
+    """Do a run, break its log, and save what is whole."""
+    log = log_of("plan", folder, "trials=6")
+    data = bytearray(log.read_bytes())
+    places = [at.start() - 37 for at in re.finditer(re.escape(b"\4\0\0\0zstd"), data[:-999])]
+    middle = places[len(places) // 2]
+    if name == "saved":
+        data[middle + 60] ^= 1
+    broken, saved = folder / "broken.mcap", folder / "saved.mcap"
+    broken.write_bytes(data if name == "saved" else data[: middle + 9])
+    salvage(broken, saved)
+    return saved
+
 
 def log_of(name, folder, *more):
     """Do a run; give its log."""
-    words = [*SMALL, *(RUNS | PAPERS)[name], "recorder=mcap", f"output={folder}", *more]
+    if name in BROKEN:
+        return broken_log_of(name, folder)
+    if name in OF_FILES:
+        write_files(folder)
+        words = [word.format(folder=folder) for word in OF_FILES[name]]
+    else:
+        words = [*SMALL, *(RUNS | PAPERS)[name]]
+    words += ["recorder=mcap", f"output={folder}", *more]
     with initialize_config_dir(conf_folder(), version_base="1.3"):
         config = compose("config", overrides=words, return_hydra_config=True)
     choices = dict(config.hydra.runtime.choices)
@@ -54,4 +104,5 @@ def told(capsys, *argv):
     code = log_cli.main([str(word) for word in argv])
     printed = capsys.readouterr()
     assert printed.err.count("\n") <= 1
+    assert not any(f"{word}: {word}" in printed.err for word in argv)  # named once
     return code, printed.out, printed.err

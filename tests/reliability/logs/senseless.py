@@ -7,8 +7,8 @@ import struct
 from dataclasses import replace
 
 import numpy as np
-from altering import Parts
 from mcap.records import Channel
+from taking_apart import Parts
 
 from gapath.recorders.mcap.format import TOPICS, TYPES
 

@@ -10,11 +10,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import zstandard
-from altering import Parts, put_together, taken_apart
 from logs_of_runs import RUNS, log_of, told
 from mcap.records import Metadata
 from scale import rounds
 from senseless import hostile
+from taking_apart import Parts, put_together, taken_apart
 
 from gapath.recorders.mcap.file.summary import MAGIC
 

@@ -4,13 +4,11 @@ A file may come from anywhere: sizes are checked before anything is read or infl
 must be written as gapath writes it, and every byte must be of a record.
 """
 
-import contextlib
 import os
-import stat
 import struct
 import zlib
 from collections.abc import Iterator
-from io import BytesIO
+from io import BufferedReader, BytesIO
 from pathlib import Path
 from typing import IO, Any, NamedTuple, TypeAlias, TypeVar
 
@@ -23,6 +21,7 @@ from gapath.errors import InputError, require
 from gapath.recorders.mcap.file.stored import Stored
 from gapath.recorders.mcap.file.summary import MAGIC, Place, Summary, encoded
 from gapath.recorders.mcap.format import LIBRARY, MAX_CHUNK, MAX_LOG, PROFILE, TOPICS
+from gapath.store.durable import open_regular
 
 Entry: TypeAlias = Metadata | Stored | Schema | Channel | Message
 """What a log says, wherever in the file it lies."""
@@ -67,18 +66,17 @@ _ZSTD = struct.pack("<I", 4) + b"zstd"
 R = TypeVar("R", bound=McapRecord)
 
 
-@contextlib.contextmanager
-def opened(path: str | Path) -> Iterator[IO[bytes]]:
+def opened(path: str | Path) -> IO[bytes]:
     """Open a regular file for reading; a pipe or a device would never end."""
-    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
-    with os.fdopen(descriptor, "rb") as file:
-        regular = stat.S_ISREG(os.fstat(descriptor).st_mode)
-        require(regular, path, "a folder, pipe or device", "a regular, readable file")
-        yield file
+    return BufferedReader(open_regular(path, links=True))
 
 
-def entries(file: IO[bytes], limits: Limits = USUAL) -> Iterator[Entry]:
-    """Walk through a whole log from its start.
+class Ended(InputError):
+    """A file ends where there must be more."""
+
+
+class Walk:
+    """Where in a file one is, and what was there so far.
 
     Parameters
     ----------
@@ -87,43 +85,49 @@ def entries(file: IO[bytes], limits: Limits = USUAL) -> Iterator[Entry]:
     limits : Limits
         What it may take.
 
-    Yields
-    ------
-    Metadata, Stored, Schema, Channel or Message
-        As they lie in the file, each checked. After the last one the end of the file is checked,
-        too.
-
     Raises
     ------
     InputError
-        Where something else stands than `Recorder` writes, or the file ends, or would take more.
+        By every method, where something else stands than `Recorder` writes, or the file ends, or
+        would take more.
     Exception
         Where bytes are no record: whatever `mcap`, `zstandard` or Python raise.
     """
-    walk = Walk(file, limits)
-    walk.begin()
-    while (entry := walk.step()) is not None:
-        yield from entry
-    walk.end()
 
-
-class Ended(InputError):
-    """A file ends where there must be more."""
-
-
-class Walk:
-    """Where in a file one is, and what was there so far."""
-
-    def __init__(self, file: IO[bytes], limits: Limits) -> None:
+    def __init__(self, file: IO[bytes], limits: Limits = USUAL) -> None:
         self._file, self._limits = file, limits
-        self._size = os.fstat(file.fileno()).st_size
+        self.size = os.fstat(file.fileno()).st_size
         self.place = self._crc = self._inflated = self._attached = self._few = 0
         self._summary = Summary()
         self._inside = Inside()
+        self.torn = 0
         file.seek(0)
 
+    def entries(self) -> Iterator[Entry]:
+        """Walk through a whole log.
+
+        Yields
+        ------
+        Metadata, Stored, Schema, Channel or Message
+            As they lie in the file, each checked. After the last one the end of the file is
+            checked, too.
+        """
+        self.begin()
+        yield from self.data()
+        self.end()
+
+    def data(self) -> Iterator[Entry]:
+        """Go on up to the end of the data; where the file `Ended`, `torn` bytes are of no use."""
+        while True:
+            self.torn = self.size - self.place
+            found = self.step()
+            if found is None:
+                return
+            self.torn = self.size - self.place
+            yield from found
+
     def _take(self, size: int) -> bytes:
-        left = self._size - self.place
+        left = self.size - self.place
         if size > left:
             raise Ended("record", f"{left} bytes up to the end", f"{size} bytes")
         data = self._file.read(size)
@@ -145,7 +149,7 @@ class Walk:
 
     def begin(self) -> None:
         """Read what a file begins with."""
-        magic = self._take(min(len(MAGIC), self._size))
+        magic = self._take(min(len(MAGIC), self.size))
         if magic != MAGIC:
             kind = Ended if MAGIC.startswith(magic) else InputError
             raise kind("first bytes", magic.hex(" "), f"those of MCAP, {MAGIC.hex(' ')}")
@@ -244,7 +248,7 @@ class Walk:
         for name, right in self._summary.parts(self.place):
             there = self._take(len(right))
             require(there == right, f"summary, {name}", "something else", "what the log holds")
-        left = self._size - self.place
+        left = self.size - self.place
         require(not left, "end of file", f"{left} more bytes", "none after the log")
 
 
