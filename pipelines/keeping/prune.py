@@ -110,11 +110,12 @@ _JUMPED = ", by a clock that jumped: "
 def _jumped(*runs: RunRecord) -> str:
     """Tell which run's times cannot be, if any: then nobody knows which of them is newer."""
     for run in runs:
-        dates = [run.status.started, run.status.finished or run.status.started]
-        times = [datetime.fromisoformat(date) for date in dates if date]
+        dates = [run.status.started, run.status.date]
+        times = list[datetime]()
+        with suppress(ValueError):  # none, or of no clock of ours
+            times = [datetime.fromisoformat(date) for date in dates]
         order = [time if time.tzinfo else time.replace(tzinfo=UTC) for time in times]
-        order.append(datetime.now(UTC))
-        if len(order) < 3 or order != sorted(order):
+        if not order or not order[0] <= order[1] <= datetime.now(UTC):
             return f"{_JUMPED}{run.name} was from {dates[0]} to {dates[1]}"
     return ""
 
