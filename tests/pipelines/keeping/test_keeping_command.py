@@ -110,8 +110,8 @@ def test_the_pages_show_it_escaped_and_where_runs_come_from(report, outputs, und
     assert shown in run and shown in every and "&lt;i&gt;note&lt;/i&gt;" in run
     for page in (run, every):
         assert "<script>alert" not in page and "\x1b" not in page
-    assert f"<tr><th scope=\"row\">directory, commit</th><td>{'abcd' * 10}</td></tr>" in run
-    assert "<th scope=\"row\">packages</th><td>0, in manifest.json</td>" in run
+    assert f'<tr><th scope="row">directory, commit</th><td>{"abcd" * 10}</td></tr>' in run
+    assert '<th scope="row">packages</th><td>0, in manifest.json</td>' in run
 
 
 def test_tags_that_cannot_be_read_keep_no_run_from_the_list_and_the_report(
