@@ -13,12 +13,12 @@ from gapath.commands.signals import watched
 
 
 @contextmanager
-def _begun(command: str) -> Iterator[None]:
+def _begun(command: str, kept: str = "") -> Iterator[None]:
     """Watch for signals; exit with code 2 where there is no working directory.
 
     Libraries ask for it while they are imported.
     """
-    with watched(command):
+    with watched(command, kept):
         try:
             Path.cwd()
         except OSError as error:
@@ -33,7 +33,7 @@ def main() -> None:
     Modules are some hundred thousand objects, none of them garbage. To look for garbage among
     them again and again takes an eighth of a short command's time.
     """
-    with _begun("gapath"):
+    with _begun("gapath", "; what is done is kept, and the same command goes on"):
         gc.disable()
         from gapath.commands.run import main as command
 

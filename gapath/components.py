@@ -1,8 +1,10 @@
 """A YAML's ``kind`` and settings become an object."""
 
+import copy
 import dataclasses
 import math
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Any, cast, get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -181,8 +183,27 @@ def checked(target: type[Any], values: object, where: str) -> dict[str, Any]:
     """Give what `typed` would make a dataclass of: every field, with its type, as plain data.
 
     A whole number is an int where the field is, and a float where that is one: 1.0 and "1" are 1,
-    -0.0 is 0.0.
+    -0.0 is 0.0. What was checked already, as most of a sweep's jobs, is not checked again.
     """
+    return copy.deepcopy(_checked(target, _Given(values), where))  # type: ignore[arg-type]
+
+
+class _Given:
+    """Plain data that is equal if it is written alike: 1, 1.0 and "1" are three things."""
+
+    def __init__(self, values: object) -> None:
+        self.values, self.text = values, repr(values)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Given) and self.text == other.text
+
+    def __hash__(self) -> int:
+        return hash(self.text)
+
+
+@lru_cache(maxsize=1024)
+def _checked(target: type[Any], given: _Given, where: str) -> dict[str, Any]:
+    values = given.values
     prefix = f"{where}." if where else ""
     names = [f.name for f in dataclasses.fields(target) if f.init]
     if not isinstance(values, dict):
@@ -197,8 +218,8 @@ def checked(target: type[Any], values: object, where: str) -> dict[str, Any]:
         schema = dataclasses.make_dataclass(target.__name__, types)
         for name, value in values.items():
             _check_kind(target, hints.get(name), value, f"{prefix}{name}")
-        given = {name: _whole(hints.get(name), value) for name, value in values.items()}
-        merged = OmegaConf.merge(OmegaConf.structured(schema), given)
+        loose = {name: _whole(hints.get(name), value) for name, value in values.items()}
+        merged = OmegaConf.merge(OmegaConf.structured(schema), loose)
         for name in names:
             require(not OmegaConf.is_missing(merged, name), prefix + name, "nothing", "a value")
         fields = OmegaConf.to_container(merged, resolve=True)

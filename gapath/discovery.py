@@ -6,6 +6,7 @@ module. An entry point of the group ``gapath.conf`` names a package that holds Y
 does: ``planner/NAME.yaml``.
 """
 
+import copy
 import importlib
 import importlib.util
 import pkgutil
@@ -282,12 +283,23 @@ def yaml_values(group: str, name: str) -> dict[str, Any]:
     file = next((path for path in candidates if path.is_file()), None)
     if file is None:
         raise InputError(group, name, one_of(name, yaml_names(group)))
-    own: dict[str, Any] = yaml.safe_load(file.read_text("utf-8"))
+    own = parsed_yaml(file.read_text("utf-8"))
     bases = [base for base in own.pop("defaults", []) if base != "_self_"]
     values: dict[str, Any] = {}
     for base in bases:
         values |= yaml_values(group, base)
     return values | own
+
+
+def parsed_yaml(text: str) -> dict[str, Any]:
+    """Parse a YAML of gapath's own, whose text a sweep reads again for each job, once."""
+    return copy.deepcopy(_parsed(text))
+
+
+@lru_cache
+def _parsed(text: str) -> dict[str, Any]:
+    values: dict[str, Any] = yaml.safe_load(text)
+    return values
 
 
 def _all_entry_points() -> list[metadata.EntryPoint]:

@@ -54,6 +54,9 @@ class Bounded(FileConfigSource):  # type: ignore[misc]
         return super().load_config(config_path)
 
 
+Bounded.__name__ = FileConfigSource.__name__  # workers register Hydra's again: by name it is one
+
+
 def check_used(words: Sequence[str], task: str) -> None:
     """Raise InputError if something was set on the command line that the task does not use."""
     find_task(task)

@@ -4,24 +4,23 @@ import os
 import shlex
 import sys
 import traceback
-from collections.abc import Mapping, Sequence
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
 from hydra import main as hydra_main
 from hydra._internal.sources_registry import SourcesRegistry
 from hydra.core.config_search_path import ConfigSearchPath
-from hydra.core.global_hydra import GlobalHydra
 from hydra.core.hydra_config import HydraConfig
-from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.plugins import Plugins
-from hydra.experimental.callback import Callback
 from hydra.plugins.search_path_plugin import SearchPathPlugin
 from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
 
 import gapath
-from gapath.commands.asker import asker, asker_of_job, begin_sweep, edited_meanwhile
+from gapath.commands.asker import asker, asker_of_job, edited_meanwhile
 from gapath.commands.refusal import (
     BAD_CONFIGURATION,
     Bounded,
@@ -34,15 +33,23 @@ from gapath.commands.refusal import (
 from gapath.discovery import component_of, conf_packages
 from gapath.errors import FAULTS, InputError, printable, require
 from gapath.running.config import HOW, Run, conf_folder, make_run
-from gapath.running.experiment import Execution, execute, run_folder
+from gapath.running.experiment import Execution, execute
+from gapath.running.sweep import BUSY
 from gapath.running.work import told, work
-from gapath.store.runfolder import RunFolder
 from gapath.store.status import RunState
 
-BAD_INPUT, FAILED, BUSY = 2, 1, 75
+BAD_INPUT, FAILED = 2, 1
 
-KEPT = 1000
-"""Configurations of a sweep's jobs that are kept between check and run: each takes 0.2 MB."""
+CODES: list[int] = []
+"""Exit codes of jobs."""
+
+ENDING = ExitStack()
+"""What is to do when the command ends."""
+
+
+# Hydra finds gapath's own YAMLs of engines before those in the packages of engines, whose types it
+# then checks: it says so as if that were a mistake, in workers, too.
+warnings.filterwarnings("ignore", r"\s*'hydra/launcher/\w+' is validated")
 
 
 class OtherConfigurations(SearchPathPlugin):  # type: ignore[misc]
@@ -52,50 +59,6 @@ class OtherConfigurations(SearchPathPlugin):  # type: ignore[misc]
         """Add their packages behind gapath's own folder."""
         for package in conf_packages()[1:]:
             search_path.append("gapath", f"pkg://{package}")
-
-
-class SweepCheck(Callback):  # type: ignore[misc]
-    """Checks every job of a sweep before the first one runs, and keeps none of those done."""
-
-    def on_multirun_start(self, config: DictConfig, **kwargs: object) -> None:
-        """Compose and check all jobs; exit with code 2 if any job's settings are wrong.
-
-        Hydra turns a callback's exceptions into warnings, but not an exit.
-        """
-        from hydra._internal.core_plugins.basic_sweeper import BasicSweeper
-
-        words = typed(config.hydra)
-        loader: Any = GlobalHydra.instance().config_loader()
-        compose = loader.load_sweep_config
-        composed: dict[tuple[str, ...], DictConfig] = {}
-        folders: dict[Path, list[str]] = {}
-        works: list[tuple[int, int]] = []
-        try:
-            params = config.hydra.sweeper.params or {}  # items() resolves them, as the sweeper does
-            words = every = [*(f"{key}={value}" for key, value in params.items()), *words]
-            parser = OverridesParser.create(config_loader=loader)
-            for words in BasicSweeper.split_arguments(parser.parse_overrides(every), None)[0]:
-                whole = compose(config, words)
-                run = run_of(whole, whole.hydra.runtime, words)
-                check_apart(run_folder(run).path, words, folders)
-                works.append((run.trials, work_of(run)))
-                if len(composed) < KEPT:
-                    composed[tuple(words)] = whole
-            for folder in folders:
-                RunFolder(folder).create_parent()
-        except FAULTS as error:
-            sys.exit(refuse(error, words, sweep=True))
-        warn(told(works))
-        begin_sweep(len(works))
-        # Hydra would compose every job twice more: to see whether it can be composed, and to do it.
-        BasicSweeper.validate_batch_is_legal = lambda self, batch: None
-        loader.load_sweep_config = lambda config, words: (
-            composed.pop(tuple(words), None) or compose(config, words)
-        )
-
-    def on_job_end(self, config: DictConfig, job_return: Any, **kwargs: object) -> None:
-        """Let go of a job's configurations: Hydra keeps what it returned until a sweep ends."""
-        job_return.cfg = job_return.hydra_cfg = None
 
 
 def job(config: DictConfig) -> int:
@@ -121,17 +84,25 @@ def job(config: DictConfig) -> int:
         again = command(words, hydra.runtime.config_sources)
         launcher = hydra.runtime.choices["hydra/launcher"]
         asked = asker_of_job(hydra.job.num, launcher) if sweep else asker()
-        execution = execute(run, again, tell=warn, asker=asked)
+        # A sweep has a bar of its own.
+        execution = execute(run, again, progress=not sweep, tell=warn, asker=asked)
     except FAULTS as error:
         return refuse(error, words, sweep)
+    code = say(describe(run, execution, short=sweep))
+    return code or (BUSY if execution.state is RunState.BUSY else 0)
+
+
+def say(text: str) -> int:
+    """Print a result; gives an exit code."""
     try:
-        print(describe(run, execution, short=sweep), flush=True)
+        with _beside_bars():
+            print(text, flush=True)
     except BrokenPipeError:  # gapath ... | head: the run is done, nobody reads on
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except OSError as error:
         error.filename = "standard output"
-        return refuse(error, words, sweep)
-    return BUSY if execution.state is RunState.BUSY else 0
+        return refuse(error, [], sweep=False)
+    return 0
 
 
 def run_of(config: DictConfig, runtime: DictConfig, words: Sequence[str]) -> Run:
@@ -176,7 +147,18 @@ def work_of(run: Run) -> int:
 def warn(line: str | None) -> None:
     """Tell something that is no error, if there is anything to tell."""
     if line is not None:
-        print(f"gapath: {line}", file=sys.stderr, flush=True)
+        with _beside_bars():
+            print(f"gapath: {line}", file=sys.stderr, flush=True)
+
+
+@contextmanager
+def _beside_bars() -> Iterator[None]:
+    """Write lines; a bar that stands there goes, and comes again below them."""
+    bars: Any = sys.modules.get("tqdm")
+    with ExitStack() as cleared:
+        if bars is not None:
+            cleared.enter_context(bars.tqdm.external_write_mode())
+        yield
 
 
 def settings_of(words: Sequence[str]) -> list[str]:
@@ -232,7 +214,7 @@ def refuse(error: BaseException, words: Sequence[str], sweep: bool) -> int:
         where = f"{Path(last.filename).name}, line {last.lineno}"
         what = " ".join(f"{type(error).__name__}: {error}".split())
         line = "; ".join([f"{component_of(error)}: {what} ({where})".lstrip(": "), *notes])
-    print(f"gapath: {printable(line)}", file=sys.stderr, flush=True)
+    warn(printable(line))
     return code
 
 
@@ -292,12 +274,11 @@ def main() -> None:
     SourcesRegistry.instance().types["file"] = Bounded
     os.environ["HYDRA_FULL_ERROR"] = "1"  # errors come here instead of being printed
     words: list[str] = []
-    failed: list[int] = []
     sweep = False
+    CODES.clear()
 
     def task(config: DictConfig) -> None:
-        if code := job(config):
-            failed.append(code)
+        CODES.append(job(config))
 
     try:
         if "--version" in sys.argv[1:]:  # Hydra would give its own
@@ -306,10 +287,11 @@ def main() -> None:
         given = arguments()
         words, sweep = given.overrides, given.multirun
         check_once(words)
-        hydra_main(version_base="1.3", config_path=conf_folder(), config_name="config")(task)()
+        with ENDING:
+            hydra_main(version_base="1.3", config_path=conf_folder(), config_name="config")(task)()
     except BrokenPipeError:  # gapath --help | head
         sys.stderr.close()
     except Exception as error:  # a job catches its own: this is a command line that is wrong
         sys.exit(refuse(error, words, sweep))
-    if failed:
-        sys.exit(next((code for code in failed if code != BUSY), BUSY))
+    if any(CODES):
+        sys.exit(next((code for code in CODES if code not in (0, BUSY)), BUSY))

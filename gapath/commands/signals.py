@@ -12,8 +12,9 @@ import select
 import signal
 import sys
 import threading
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
 
 PATIENCE = 0.4
 """Seconds for last words, should a disk be slow; a second signal does not wait for them."""
@@ -22,7 +23,7 @@ _WORDS = {int(signal.SIGINT): "interrupted", int(signal.SIGTERM): "terminated"}
 
 
 @contextmanager
-def watched(command: str) -> Iterator[None]:
+def watched(command: str, kept: str = "") -> Iterator[None]:
     """End this process on either signal meanwhile, with exit code 128 + its number.
 
     One that was ignored, as Control-C is of jobs in the background of a script, still is. One that
@@ -31,13 +32,16 @@ def watched(command: str) -> Iterator[None]:
     Parameters
     ----------
     command : str
-        Its name, for the line on standard error.
+        Its name, for the line on standard error; empty of a process that another speaks for.
+    kept : str
+        What that line says more: what is safe.
     """
     read, write = os.pipe()
     os.set_blocking(write, False)
     signal.set_wakeup_fd(write, warn_on_full_buffer=False)
     ending = threading.Lock()  # the command, or a signal: who has it keeps it
-    threading.Thread(target=_wait, args=(command, read, ending), daemon=True).start()
+    line = f"{command}: {{}}{kept}" if command else ""
+    threading.Thread(target=_wait, args=(line, read, ending), daemon=True).start()
     for number in _WORDS:
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, lambda *given: None)  # Python writes into the pipe
@@ -49,20 +53,53 @@ def watched(command: str) -> Iterator[None]:
             signal.signal(number, signal.SIG_IGN)  # Python takes back all other handlers
 
 
-def _wait(command: str, read: int, ending: threading.Lock) -> None:
+@contextmanager
+def following(over: Callable[[], bool]) -> Iterator[None]:
+    """Work for another process: what that one is told by a signal ends this one, too, silently.
+
+    Parameters
+    ----------
+    over : callable
+        Tells whether the other process is gone, however it ended.
+    """
+    if threading.current_thread() is threading.main_thread() and not _followed:
+        _worker.enter_context(watched(""))
+        threading.Thread(target=_follow, daemon=True).start()
+    _followed[:] = [over]
+    try:
+        yield
+    finally:
+        _followed[:] = [lambda: False]
+
+
+_followed: list[Callable[[], bool]] = []
+
+_worker = ExitStack()
+
+_LOOK = 0.3  # seconds between looks at the other process
+
+
+def _follow() -> None:
+    while not _followed or not _followed[0]():
+        time.sleep(_LOOK)
+    _end("", int(signal.SIGTERM))
+
+
+def _wait(line: str, read: int, ending: threading.Lock) -> None:
     while (number := os.read(read, 1)[0]) not in _WORDS:
         pass
     ending.acquire()
     try:
-        threading.Thread(target=_end, args=(command, number), daemon=True).start()
+        threading.Thread(target=_end, args=(line, number), daemon=True).start()
         select.select([read], [], [], PATIENCE)
     finally:
         os._exit(128 + number)
 
 
-def _end(command: str, number: int) -> None:
+def _end(line: str, number: int) -> None:
     try:
-        _tell(f"{command}: {_WORDS[number]}")
+        if line:
+            _tell(line.format(_WORDS[number]))
         durable = sys.modules.get("gapath.store.durable")
         for action in getattr(durable, "LAST", ()):  # what was not imported yet has none
             action()

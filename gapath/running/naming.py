@@ -6,9 +6,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import yaml
-
-from gapath.discovery import yaml_names, yaml_values
+from gapath.discovery import parsed_yaml, yaml_names, yaml_values
 from gapath.store.settings import Value, flatten, written
 
 if TYPE_CHECKING:
@@ -78,9 +76,7 @@ def method_of(
 
 def usual_values() -> dict[str, Any]:
     """Read ``conf/config.yaml``: what is set where nobody says otherwise."""
-    text = (files("gapath.conf") / "config.yaml").read_text("utf-8")
-    values: dict[str, Any] = yaml.safe_load(text)
-    return values
+    return parsed_yaml((files("gapath.conf") / "config.yaml").read_text("utf-8"))
 
 
 def _within(key: str, settings: Collection[str]) -> bool:

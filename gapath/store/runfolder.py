@@ -166,8 +166,15 @@ def is_locked(path: Path) -> bool:
     as it closes the file once more, as each look within it would.
     """
     with contextlib.suppress(OSError), open_regular(path) as lock:
-        return not _taken(lock.fileno(), fcntl.LOCK_SH)
+        return is_held(lock.fileno())
     return False
+
+
+def is_held(lock: int) -> bool:
+    """Tell the same of a file that is open, and stays so; raises OSError if it has no locks."""
+    if free := _taken(lock, fcntl.LOCK_SH):
+        fcntl.flock(lock, fcntl.LOCK_UN)
+    return not free
 
 
 def _taken(lock: int, how: int) -> bool:

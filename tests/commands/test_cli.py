@@ -7,13 +7,10 @@ import sys
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
-from hydra._internal.config_loader_impl import ConfigLoaderImpl
-from hydra.types import RunMode
 from PIL import Image
 
 from gapath.commands import run as cli
 from gapath.store import runfolder
-from gapath.store.records import find_runs
 
 OPEN = "type octile\nheight 3\nwidth 5\nmap\n.....\n.....\n.....\n"
 WALLED = "type octile\nheight 3\nwidth 5\nmap\n..@..\n..@..\n..@..\n"
@@ -221,23 +218,6 @@ def test_a_scenario_that_was_edited_is_another_run(gapath, tmp_path):
         (tmp_path / "s.scen").write_text(text)
         assert ": skipped" not in gapath(*run)[1]
     assert ": skipped" in gapath(*run)[1]
-
-
-@pytest.mark.parametrize(("kept", "composed"), [(1000, 3), (2, 3 + 1)])
-def test_a_sweep_composes_each_job_once_unless_there_are_many(
-    gapath, tmp_path, monkeypatch, kept, composed
-):
-    def load(self, *, overrides, run_mode, **rest):
-        if run_mode is RunMode.RUN:
-            asked.append(tuple(word for word in overrides if word.startswith("seed")))
-        return original(self, overrides=overrides, run_mode=run_mode, **rest)
-
-    asked, original = [], ConfigLoaderImpl.load_configuration
-    monkeypatch.setattr(cli, "KEPT", kept)
-    monkeypatch.setattr(ConfigLoaderImpl, "load_configuration", load)
-    assert gapath("-m", "planner=astar", "recorder=none", "map=kg18_test1", "seed=5,6,7")[0] == 0
-    assert (len(asked), len(set(asked))) == (composed, 3)
-    assert sorted(run.known.seed for run in find_runs(tmp_path / "out")) == [5, 6, 7]
 
 
 def test_sweeps_may_name_maps_by_pattern(gapath):

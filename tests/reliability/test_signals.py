@@ -14,6 +14,7 @@ from gapath.store import durable, whole
 from gapath.store import status as statuses
 from gapath.store.records import find_runs
 
+KEPT = "; what is done is kept, and the same command goes on"  # of gapath itself
 SECONDS = 4.0  # for one signal on a busy machine; `test_kills` asks for 0.5 s of half of them
 
 
@@ -31,7 +32,7 @@ def test_every_command_ends_while_it_starts(script, number, tmp_path):
     wait(process, lambda: is_watching(process))
     seconds = ended(process, number)
     assert process.returncode == 128 + number
-    assert errors.read_text() == f"{script}: {WORDS[number]}\n"
+    assert errors.read_text() == f"{script}: {WORDS[number]}{KEPT * (script == 'gapath')}\n"
     assert seconds < SECONDS
 
 
@@ -57,7 +58,7 @@ def test_a_run_ends(moment, gapath, tmp_path):
     time.sleep(0.3)
     seconds = ended(process, number)
     assert (process.returncode, errors.read_text()) == (
-        128 + number, f"gapath: {WORDS[number]}\n"
+        128 + number, f"gapath: {WORDS[number]}{KEPT}\n"
     )  # fmt: skip
     assert seconds < SECONDS
     assert states(out) == ["interrupted"]
@@ -71,7 +72,7 @@ def test_no_job_of_a_sweep_starts_while_all_are_checked(tmp_path):
     wait(process, lambda: is_watching(process))
     time.sleep(0.3)
     seconds = ended(process, INT)
-    assert (process.returncode, errors.read_text()) == (130, "gapath: interrupted\n")
+    assert (process.returncode, errors.read_text()) == (130, f"gapath: interrupted{KEPT}\n")
     assert seconds < SECONDS
     assert not out.exists()
 
@@ -130,7 +131,10 @@ def test_a_second_signal_waits_for_nothing(patience, numbers, tmp_path, monkeypa
         time.sleep(0.05)
         assert process.poll() is None
     seconds = ended(process, numbers[-1])
-    assert (process.returncode, errors.read_text()) == (128 + first, f"gapath: {WORDS[first]}\n")
+    assert (process.returncode, errors.read_text()) == (
+        128 + first,
+        f"gapath: {WORDS[first]}{KEPT}\n",
+    )
     assert seconds < SECONDS
 
 
@@ -148,7 +152,7 @@ def test_a_run_that_is_taking_its_place_is_done(gapath, tmp_path):
 
     process = Forked([*words, f"output={tmp_path / 'out'}"], errors, before)
     wait(process, lambda: False)
-    assert (process.returncode, errors.read_text()) == (130, "gapath: interrupted\n")
+    assert (process.returncode, errors.read_text()) == (130, f"gapath: interrupted{KEPT}\n")
     assert states(tmp_path / "out") == ["done"]
     assert "skipped" in gapath(*words)[1]
 

@@ -1,0 +1,248 @@
+"""A sweep: all jobs are checked before the first one runs, and an engine does those that are left.
+
+Engines are Hydra's launchers, which do jobs in this process or in others.
+"""
+
+import os
+import shlex
+import sys
+from collections.abc import Sequence
+from contextlib import redirect_stderr, redirect_stdout
+from dataclasses import dataclass, field
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+from hydra._internal.config_loader_impl import ConfigLoaderImpl
+from hydra.core.global_hydra import GlobalHydra
+from hydra.core.hydra_config import HydraConfig
+from hydra.core.override_parser.overrides_parser import OverridesParser
+from hydra.core.plugins import Plugins
+from hydra.core.utils import JobReturn, JobStatus
+from hydra.experimental.callback import Callback
+from hydra.plugins.launcher import Launcher
+from omegaconf import DictConfig
+
+from gapath.commands import run as command
+from gapath.commands.asker import begin_sweep
+from gapath.commands.composing import Composer
+from gapath.commands.signals import following
+from gapath.commands.watching import Shown
+from gapath.errors import FAULTS, printable, require
+from gapath.running.config import Run
+from gapath.running.experiment import run_folder
+from gapath.running.sweep import Standing, SweepFile, difference, host, tell, unfinished
+from gapath.running.work import told
+from gapath.store.runfolder import RunFolder
+from gapath.store.whole import is_whole
+
+_launcher = Plugins.instantiate_launcher
+
+MANY = 10**9
+
+_EXTRAS = {"joblib": "joblib", "submitit": "cluster", "ray": "ray"}
+"""What the name of an engine begins with -> the extra of gapath that has it."""
+
+
+class SweepCheck(Callback):  # type: ignore[misc]
+    """Checks every job of a sweep before the first one runs, and keeps none of those done."""
+
+    def on_multirun_start(self, config: DictConfig, **kwargs: object) -> None:
+        """Compose and check all jobs; exit with code 2 if any job's settings are wrong.
+
+        Hydra turns a callback's exceptions into warnings, but not an exit.
+        """
+        # Not above: Hydra's search for plugins makes this module anew.
+        from hydra._internal.core_plugins.basic_sweeper import BasicSweeper
+
+        words = command.typed(config.hydra)
+        loader: Any = GlobalHydra.instance().config_loader()
+        compose = Composer(loader, config)
+        sweep = _Sweep()
+        try:
+            _check_engine(config)
+            params = config.hydra.sweeper.params or {}  # items() resolves them, as the sweeper does
+            words = every = [*(f"{key}={value}" for key, value in params.items()), *words]
+            parser = OverridesParser.create(config_loader=loader)
+            for words in BasicSweeper.split_arguments(parser.parse_overrides(every), None)[0]:
+                whole = compose(words)
+                sweep.add(command.run_of(whole, whole.hydra.runtime, words), words)
+            words = every
+            sweep.begin()
+        except FAULTS as error:
+            sys.exit(command.refuse(error, words, sweep=True))
+        command.ENDING.callback(sweep.end)
+        # Hydra would compose every job twice more: to see whether it can be composed, and to do it.
+        BasicSweeper.validate_batch_is_legal = lambda self, batch: None
+        ConfigLoaderImpl.load_sweep_config = lambda self, master_config, sweep_overrides: compose(
+            sweep_overrides
+        )
+        Plugins.instantiate_launcher = lambda self, hydra_context, task_function, config: _Engine(
+            _launcher(self, hydra_context, sweep.job, config), sweep
+        )
+
+    def on_job_end(self, config: DictConfig, job_return: Any, **kwargs: object) -> None:
+        """Let go of a job's configurations: Hydra keeps what it returned until a sweep ends."""
+        job_return.cfg = job_return.hydra_cfg = None
+
+
+def _check_engine(config: DictConfig) -> None:
+    """Raise InputError if the package of the chosen engine is not installed."""
+    name = str(config.hydra.runtime.choices["hydra/launcher"])
+    known = str(config.hydra.launcher._target_) in Plugins.instance().class_name_to_class
+    extra = next((e for begin, e in _EXTRAS.items() if name.startswith(begin)), None)
+    right = f"pip install 'gapath[{extra}]', or another engine" if extra else "one that is there"
+    require(known, "hydra/launcher", f"{name}, which is not installed", right)
+
+
+@dataclass
+class _Job:
+    """What an engine calls for each job, in whichever process.
+
+    Parameters
+    ----------
+    file : str
+        The sweep's (`gapath.running.sweep`).
+    pid : int
+        The process of the sweep.
+    host : str
+        Its machine.
+    """
+
+    file: str
+    pid: int
+    host: str
+
+    def __call__(self, config: DictConfig) -> int:
+        """Do a job; gives its exit code."""
+        hydra = HydraConfig.get()
+        number, words = hydra.job.num, command.typed(hydra)
+        path = Path(self.file)
+        tell(path, begun=number, words=words)
+        if (self.pid, self.host) == (os.getpid(), host()):
+            return self._done(config, words, path, number)
+        out, err = StringIO(), StringIO()
+        sweep = Standing(path)
+        # Of a process on another machine nobody here knows.
+        over = (lambda: not sweep.alive) if self.host == host() else (lambda: False)
+        with redirect_stdout(out), redirect_stderr(err), following(over):
+            return self._done(config, words, path, number, out, err)
+
+    def _done(
+        self, config: DictConfig, words: list[str], path: Path, number: int, *said: StringIO
+    ) -> int:
+        code = command.FAILED
+        try:
+            code = command.job(config)
+        finally:
+            texts = [each.getvalue() for each in said]
+            trials = int(config.trials)
+            tell(path, ended=number, code=code, trials=trials, words=words, said=texts)
+        return code
+
+
+@dataclass
+class _Sweep:
+    """The jobs of a sweep, and what came of them."""
+
+    folders: dict[Path, list[str]] = field(default_factory=dict)
+    whole: set[tuple[str, ...]] = field(default_factory=set)
+    """Jobs whose runs need nothing more."""
+    works: list[tuple[int, int]] = field(default_factory=list)
+    codes: list[int] = field(default_factory=list)
+    begun: int = 0
+    """Jobs that engines got so far."""
+    file: SweepFile | None = None
+
+    def add(self, run: Run, words: list[str]) -> None:
+        """Add a checked job; raises InputError if it is another one's run."""
+        folder = run_folder(run)
+        command.check_apart(folder.path, words, self.folders)
+        if not run.force and is_whole(folder, run.settings):
+            self.whole.add(tuple(words))
+        else:
+            self.works.append((run.trials, command.work_of(run)))
+
+    def begin(self) -> None:
+        """Say what is to do, and make the file; raises InputError if that cannot be made."""
+        if self.whole:
+            place = next(iter(self.folders)).parent
+            runs = f"{len(self.whole)} of {len(self.folders)} runs are whole, in {printable(place)}"
+            command.say(f"skipped: {runs} (force=true runs them again)")
+        if not self.works:
+            return
+        for folder in self.folders:
+            RunFolder(folder).create_parent()
+        place = next(iter(self.folders)).parent
+        names = [folder.name for folder in self.folders]
+        line = shlex.join(["gapath", *sys.argv[1:]])
+        for other in unfinished(place.parent):
+            if other.path.parent == place and not other.alive and {*other.folders} != {*names}:
+                command.warn(_told_apart(other.path, other.left, difference(other.command, line)))
+        jobs, whole = len(self.folders), len(self.whole)
+        self.file = SweepFile(
+            place, {"command": line, "jobs": jobs, "whole": whole, "folders": names}
+        )
+        begin_sweep(jobs - whole)
+        command.warn(told(self.works))
+
+    @property
+    def job(self) -> _Job:
+        """What engines call."""
+        path = "" if self.file is None else str(self.file.path.resolve())
+        return _Job(path, os.getpid(), host())
+
+    def end(self) -> None:
+        """Count what came of it, and let go of the file."""
+        command.CODES.extend(self.codes)
+        if self.file is not None:
+            self.file.close(done=len(self.codes) == len(self.works) and not any(self.codes))
+
+
+def _told_apart(path: Path, left: int, difference: str) -> str:
+    what = f"it had {difference}" if difference else "its code or a file that it read was another"
+    said = f"another sweep here was not finished, {left} runs are left: {what}; nothing is mixed"
+    return printable(f"{said} ({path})")
+
+
+class _Engine(Launcher):  # type: ignore[misc]
+    """Has an engine do the jobs that are left, and shows how far it is."""
+
+    def __init__(self, engine: Any, sweep: _Sweep) -> None:
+        self._engine, self._sweep = engine, sweep
+
+    def setup(self, **given: object) -> None:
+        """Nothing: the engine is set up already."""
+
+    def launch(
+        self, job_overrides: Sequence[Sequence[str]], initial_job_idx: int
+    ) -> Sequence[JobReturn]:
+        """Do jobs; of those that are whole nothing is asked."""
+        sweep = self._sweep
+        todo = [words for words in job_overrides if tuple(words) not in sweep.whole]
+        # That of submitit for one machine starts all that it gets at once.
+        most = (os.cpu_count() or 1) if type(self._engine).__name__ == "LocalLauncher" else MANY
+        parts = (todo[i : i + most] for i in range(0, len(todo), most))
+        returns = (each for part in parts for each in self._launched(part))
+        done = JobReturn(status=JobStatus.COMPLETED, _return_value=0)
+        return [done if tuple(words) in sweep.whole else next(returns) for words in job_overrides]
+
+    def _launched(self, todo: list[Sequence[str]]) -> list[JobReturn]:
+        sweep = self._sweep
+        assert sweep.file is not None
+        first, sweep.begun = sweep.begun, sweep.begun + len(todo)
+        # Where a signal ends this process, what joblib leaves to another one is told as a mistake.
+        os.environ["PYTHONWARNINGS"] = "ignore:resource_tracker:UserWarning"
+        with Shown(sweep.file.path, command.say, command.warn) as shown:
+            try:
+                returns = list(self._engine.launch(todo, first))
+            except FAULTS as error:  # of the engine itself, or of a process of its
+                code = command.refuse(error, [], sweep=True)
+                returns = [JobReturn(status=JobStatus.COMPLETED, _return_value=code) for _ in todo]
+        for each in returns:
+            if each.status is JobStatus.FAILED:  # what no job let through is an engine's
+                each.return_value = command.refuse(each._return_value, [], sweep=True)
+                each.status = JobStatus.COMPLETED
+            sweep.codes.append(each.return_value)
+        command.CODES.extend(shown.codes)
+        return returns
