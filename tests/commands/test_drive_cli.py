@@ -86,7 +86,7 @@ def test_a_log_is_done_again_without_the_files_that_its_run_read(
     monkeypatch.chdir(tmp_path / "elsewhere")
     assert log_cli.main(["verify", str(log)]) == 0
     told = capfd.readouterr().out
-    assert "reproduced" in told and "; drive.known_map, its name and source, is what the" in told
+    assert "reproduced" in told and "; drive.known_map is what the log has of known.map" in told
     run = next(mcap.read_events(log))
     assert run.problem.maps["drive.known_map"].obstacles.sum() == 2
 

@@ -19,6 +19,7 @@ from gapath.store.whole import is_whole
 
 INT, TERM, KILL = signal.SIGINT, signal.SIGTERM, signal.SIGKILL
 WORDS = {INT: "interrupted", TERM: "terminated"}
+KEPT = "; what is done is kept, and the same command goes on"  # of gapath itself
 
 ROOT = Path(__file__).parents[2]
 SCRIPTS = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["scripts"]

@@ -17,6 +17,7 @@ import pyarrow.parquet as pq
 import pytest
 from ending import (
     INT,
+    KEPT,
     KILL,
     TERM,
     WORDS,
@@ -216,7 +217,7 @@ def whole(path):
 def check_told(process, command, numbers):
     """Nothing but lines that a run goes on, and, of a signal that ended it, one line."""
     *others, last = ["", *command.errors.read_text().splitlines()]
-    word = f"{command.script}: {WORDS.get(numbers[0])}"
+    word = f"{command.script}: {WORDS.get(numbers[0])}{KEPT * (command.script == 'gapath')}"
     if process.returncode in (0, -KILL) or len(numbers) == 2:
         assert process.returncode in (0, -numbers[0], 128 + numbers[0])
         others += [last] * (last != word or not process.returncode)

@@ -7,14 +7,25 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from ending import INT, SCRIPTS, TERM, WORDS, Forked, ended, is_watching, started, states, wait
+from ending import (
+    INT,
+    KEPT,
+    SCRIPTS,
+    TERM,
+    WORDS,
+    Forked,
+    ended,
+    is_watching,
+    started,
+    states,
+    wait,
+)
 
 from gapath.commands import signals
 from gapath.store import durable, whole
 from gapath.store import status as statuses
 from gapath.store.records import find_runs
 
-KEPT = "; what is done is kept, and the same command goes on"  # of gapath itself
 SECONDS = 4.0  # for one signal on a busy machine; `test_kills` asks for 0.5 s of half of them
 
 
