@@ -3,9 +3,11 @@
 import gc
 import time
 import tracemalloc
+import weakref
 from dataclasses import replace
 from pathlib import Path
 
+from hydra.core.hydra_config import HydraConfig
 from scale import rounds
 from small_run import small_run
 
@@ -69,6 +71,21 @@ def test_memory_of_many_trials(tmp_path):
             f"rows take {size:.1f} MB"
         )
         assert most < before + 150
+
+
+def test_a_sweep_keeps_no_job_that_is_done(gapath, monkeypatch):
+    configurations, alive = [], []
+
+    def job(config):
+        gc.collect()
+        alive.extend(each for each in configurations if each())
+        hydra = HydraConfig.instance().cfg
+        configurations.extend(map(weakref.ref, (config, hydra)))
+        return 0
+
+    monkeypatch.setattr(cli, "job", job)
+    assert gapath("-m", "map=kg18_test1", "planner=astar", "seed=1,2,3")[0] == 0
+    assert len(configurations) == 6 and not alive
 
 
 def test_memory_does_not_grow_with_runs(gapath, tmp_path, monkeypatch):
