@@ -75,11 +75,21 @@ def _shown(value: Any, where: str) -> Any:
         require(len(value) <= MOST_TEXT, f"{MANIFEST}, {where}", f"{len(value)} characters", right)
         return value if value.isprintable() else printable(value)
     if isinstance(value, Mapping):
+        if _all_shown(value):
+            return value
         made = {_shown(name, where): _shown(item, where) for name, item in value.items()}
         same = all(a is b for pair in zip(made.items(), value.items(), strict=False)
                    for a, b in zip(*pair, strict=True))  # fmt: skip
         return value if same and len(made) == len(value) else made
     return value
+
+
+def _all_shown(texts: Mapping[str, Any]) -> bool:
+    """Tell at once of a mapping, as of all packages, that every text in it can be shown."""
+    values = texts.values()
+    told = [*texts, *(value for value in values if isinstance(value, str))]
+    plainly = "".join(told).isprintable() and max(map(len, told), default=0) <= MOST_TEXT
+    return plainly and not any(isinstance(value, Mapping) for value in values)
 
 
 def check_size(metadata: Any, columns: Iterable[str], trials: int) -> None:

@@ -98,10 +98,8 @@ def test_what_somebody_put_beside_a_run_stays(report, outputs):
     assert code == 0
     assert "mine/old " in text and "left in its folder, no part of it: link, remarks.txt" in text
     assert "no part of it: plots" in text
-    assert sorted(path.name for path in (outputs / "mine" / "old").iterdir()) == [
-        "link",
-        "remarks.txt",
-    ]
+    beside = sorted(path.name for path in (outputs / "mine" / "old").iterdir())
+    assert beside == ["link", "remarks.txt"]
     assert (outputs / "mine" / "failed" / "plots" / "a.png").read_text() == "a"
     assert left(outputs) == {"new", "only", "old", "failed"}
     assert {run.folder.name for run in find_runs(outputs)} == {"new", "only"}
