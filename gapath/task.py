@@ -8,16 +8,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from functools import lru_cache
-from typing import (
-    Any,
-    ClassVar,
-    NamedTuple,
-    Protocol,
-    Self,
-    TypeAlias,
-    get_args,
-    runtime_checkable,
-)
+from typing import Any, ClassVar, NamedTuple, Protocol, Self, TypeAlias, get_args, runtime_checkable
 
 from numpy.typing import NDArray
 

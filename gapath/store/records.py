@@ -18,15 +18,7 @@ from gapath.store.results import Results
 from gapath.store.runfolder import BEFORE, LOCK, PROGRESS, WORK, RunFolder, is_locked
 from gapath.store.settings import Flat, Value, read_settings
 from gapath.store.shape import shaped
-from gapath.store.status import (
-    STATUS,
-    WHOLE,
-    RunState,
-    Status,
-    as_json,
-    contents,
-    parsed,
-)
+from gapath.store.status import STATUS, WHOLE, RunState, Status, as_json, contents, parsed
 
 MANIFEST, CONFIG, TRIALS = "manifest.json", "config.yaml", "trials.parquet"
 """Names of files that every run folder has, beside `STATUS`."""

@@ -21,7 +21,7 @@ from gapath.problem import Problem
 from gapath.running.config import conf_folder
 from gapath.survey.obstacle_image import Clearance, dilate
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 FOLDER = ROOT / "conf" / "experiment"
 UNSEEN = sorted(
     path.relative_to(FOLDER).with_suffix("").as_posix() for path in FOLDER.glob("unseen/*/*.yaml")

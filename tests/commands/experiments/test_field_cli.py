@@ -10,7 +10,7 @@ from omegaconf import OmegaConf
 from gapath.mapio.movingai import read_scenario
 from gapath.running.config import conf_folder
 
-FOLDER = Path(__file__).parents[2] / "conf" / "experiment"
+FOLDER = Path(__file__).parents[3] / "conf" / "experiment"
 FIELD = sorted(
     path.relative_to(FOLDER).with_suffix("").as_posix() for path in FOLDER.glob("field/*/*.yaml")
 )
