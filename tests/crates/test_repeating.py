@@ -129,7 +129,7 @@ def test_a_crate_is_what_the_worst_of_its_runs_is(made, capfd):
 
 def test_what_takes_long_is_asked_for(made, capfd, monkeypatch):
     assert called(capfd, "crate", made, "crate")[0] == 0
-    monkeypatch.setattr("gapath.running.again.MOST_WORK", 0)
+    monkeypatch.setattr("gapath.running.verify.MOST_WORK", 0)
     code, out, err = called(capfd, "repeat", "crate")
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert "--yes" in err
