@@ -5,6 +5,7 @@ written so that it is seen instead.
 """
 
 import dataclasses
+import math
 import shlex
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -13,6 +14,7 @@ import numpy as np
 
 from gapath.errors import InputError, printable, require
 from gapath.store.records import MANIFEST, TRIALS, RunRecord
+from gapath.store.results import Results
 
 MOST_TEXT = 4096
 """Characters of a name, a setting or a cell: those of a path."""
@@ -144,3 +146,14 @@ def check_amounts(table: Any, success: str) -> None:
             wrong |= succeeded & ~np.isfinite(values)
         if wrong.any():
             raise InputError(f"{TRIALS}, {name}", values[wrong][0], "a finite number, not negative")
+
+
+def check_sums(results: Results) -> None:
+    """Raise InputError if trials cannot come to what a manifest says they came to.
+
+    A cost is infinite where no path exists.
+    """
+    for name, total in results.sums.items():
+        wrong = math.isnan(total) or (math.isinf(total) and "cost" not in name)
+        wrong |= total < 0 and (name in _AMOUNTS or name.endswith(_TIME))
+        require(not wrong, f"{MANIFEST}, results, {name}", total, "a sum that trials can come to")

@@ -5,7 +5,7 @@ from typing import TypeVar
 
 from gapath.errors import InputError
 from gapath.events import Event, RunStarted
-from gapath.recorders.mcap import FILE, read_events
+from gapath.recorders.mcap import FILE, read_sound
 from gapath.store.records import RunRecord
 
 Read = TypeVar("Read")
@@ -17,8 +17,8 @@ def has_log(run: RunRecord) -> bool:
 
 
 def events_of(run: RunRecord) -> Iterator[Event]:
-    """Read a run's log; it has one, and what is damaged raises InputError when it is reached."""
-    return read_events(run.folder / FILE)
+    """Read a run's log; it has one. InputError is raised at what is damaged or makes no sense."""
+    return read_sound(run.folder / FILE)
 
 
 def read_logs(

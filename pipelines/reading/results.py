@@ -1,7 +1,7 @@
 """What a run's trials come to."""
 
 from gapath.errors import InputError
-from gapath.pipelines.reading.bounded import check_size
+from gapath.pipelines.reading.bounded import check_size, check_sums
 from gapath.store.records import TRIALS, RunRecord
 from gapath.store.results import Results
 
@@ -22,9 +22,10 @@ def results_of(run: RunRecord) -> Results:
     Raises
     ------
     InputError
-        If its trials cannot be read.
+        If its trials cannot be read, or come to what no trials can.
     """
     if run.known.results is not None:
+        check_sums(run.known.results)
         return run.known.results
     from pyarrow import parquet
 

@@ -1,6 +1,7 @@
 """Runs as a table: types, what is missing, runs of earlier versions, conditions."""
 
 import json
+import math
 import shutil
 from dataclasses import replace
 
@@ -10,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gapath.errors import InputError
-from gapath.pipelines.reading.frame import chosen, run_frame, setting_columns
+from gapath.pipelines.reading.frame import checked, chosen, run_frame, setting_columns
 from gapath.pipelines.reading.query import quoted
 from gapath.store.records import find_runs
 from gapath.store.results import Results
@@ -67,6 +68,20 @@ def test_what_is_defined_in_no_trial_is_null_and_still_a_number():
     frame = run_frame([with_settings("a"), other])
     assert frame["clearance"].dtype == "float64"
     assert frame["clearance"].isna().tolist() == [True, False]
+
+
+@pytest.mark.parametrize(("name", "total", "good"), [
+    ("length", math.nan, False), ("length", math.inf, False), ("length", -math.inf, False),
+    ("cost", math.nan, False), ("cost", math.inf, True), ("cost", -1.0, False),
+    ("plan_time_s", -1.0, False), ("plan_time_s", math.inf, False), ("epochs", -1.0, False),
+    ("mine", -1.0, True), ("mine", math.nan, False),
+])  # fmt: skip
+def test_sums_that_no_trials_come_to_are_a_runs_fault(name, total, good):
+    run = with_settings("a")
+    came = replace(run.known.results, sums={name: total}, counts={})
+    run = replace(run, manifest=replace(run.known, results=came))
+    fault = checked(run).fault
+    assert (fault == "") if good else f"manifest.json, results, {name}: got {total}" in fault
 
 
 def test_seeds_up_to_the_last_come_back():

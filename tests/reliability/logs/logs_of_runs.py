@@ -2,6 +2,7 @@
 
 import hashlib
 import re
+import struct
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -57,11 +58,17 @@ def write_files(folder):
     (folder / "known.map.scen").write_text("version 1\n" + "\n".join(lines) + "\n")
 
 
+def chunks_of(data):
+    """Find where the chunks of a log begin."""
+    marks = re.finditer(re.escape(struct.pack("<I", 4) + b"zstd"), data)
+    return [at.start() - 37 for at in marks if data[at.start() - 37] == 6]
+
+
 def broken_log_of(name, folder):
     """Do a run, break its log, and save what is whole."""
     log = log_of("plan", folder, "trials=6")
     data = bytearray(log.read_bytes())
-    places = [at.start() - 37 for at in re.finditer(re.escape(b"\4\0\0\0zstd"), data[:-999])]
+    places = chunks_of(data)
     middle = places[len(places) // 2]
     if name == "saved":
         data[middle + 60] ^= 1

@@ -10,12 +10,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from altering import alterations
-from logs_of_runs import BROKEN, OF_FILES, RUNS, log_of, told
+from logs_of_runs import BROKEN, OF_FILES, RUNS, chunks_of, log_of, told
 from mcap.records import Message, Metadata
 from mcap.writer import CompressionType, IndexType
 from scale import rounds
 from taking_apart import Parts, put_together, taken_apart
 
+from gapath.recorders import mcap
 from gapath.recorders.mcap import description
 from gapath.running import again
 
@@ -186,3 +187,47 @@ def test_a_message_that_is_said_to_be_lost_is_told(log, tmp_path, capsys):
             put_together(Parts(lost, parts.ends), path)
             code, line = verified(path, capsys)
             assert code and (code < 3 or f"lost: messages {number}-{number}" in line), line
+
+
+@pytest.fixture
+def short(monkeypatch, tmp_path):
+    """A log of many chunks, and where they begin."""
+    monkeypatch.setattr("gapath.recorders.mcap.log.CHUNK_MESSAGES", 4)
+    log = log_of("plan", tmp_path, "trials=6")
+    return log, chunks_of(log.read_bytes())
+
+
+def test_a_log_that_breaks_off_is_interrupted(short, tmp_path, capsys):
+    log, places = short
+    whole, part, rng = log.read_bytes(), tmp_path / "run.mcap.part", np.random.default_rng(3)
+    for more in (0, 1, 60):
+        place = places[len(places) // 2]
+        part.write_bytes(whole[: place + more])
+        code, line = verified(part, capsys)
+        assert code == 3 and ": interrupted after trial" in line, line
+        assert "equal so far, byte for byte" in line
+        assert (f"its last {more} bytes are of no whole chunk" in line) == (more > 0)
+    for length in rng.integers(places[1], places[-1] + 99, rounds(9, 300)).tolist():
+        part.write_bytes(whole[:length])
+        code, line = verified(part, capsys)
+        assert code == 3 and "equal so far, byte for byte" in line, line
+        data = bytearray(whole[: max(place for place in places if place <= length)])
+        data[rng.integers(len(data))] ^= 1 << rng.integers(8)
+        part.write_bytes(data)
+        assert verified(part, capsys)[0] in (1, 2)
+    for length in (0, 5, places[0] - 1, places[0] + 40, len(whole) - 1, len(whole) - 200):
+        part.write_bytes(whole[:length])
+        assert verified(part, capsys)[0] == 2
+
+
+def test_a_log_under_way_or_ended_early_is_interrupted(short, tmp_path, capsys):
+    events, folder = list(mcap.read_events(short[0])), tmp_path / "under way"
+    folder.mkdir()
+    recorder = mcap.Recorder()
+    recorder.open(str(folder))
+    for event in events[:12]:
+        recorder.record(event)
+    for _ in range(2):  # as it is written, and when that was ended
+        code, line = verified(folder / "run.mcap.part", capsys)
+        assert (code, "equal so far, byte for byte" in line) == (3, True), line
+        recorder.abort()
