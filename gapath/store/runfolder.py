@@ -162,8 +162,9 @@ def is_locked(path: Path) -> bool:
     """Tell whether a living process holds a lock.
 
     To look is to share it for a moment, which keeps no run from it: who finds a lock shared waits.
-    To ask without that (F_GETLK) is only possible of record locks, which a process loses as soon
-    as it closes the file once more, as each look within it would.
+    To ask without that is only possible of other locks. Those of records (F_GETLK) a process loses
+    as soon as it closes the file once more, as each look within it would; those of open files
+    (F_OFD_GETLK) are Linux's own; /proc/locks lacks what other machines and containers hold.
     """
     with contextlib.suppress(OSError), open_regular(path) as lock:
         return is_held(lock.fileno())

@@ -12,9 +12,10 @@ from pathlib import Path
 import pyarrow.parquet as pq
 
 from gapath import __main__
+from gapath.running.experiment import Execution, run_folder
 from gapath.store.records import Manifest
 from gapath.store.runfolder import BEFORE, PROGRESS, WORK
-from gapath.store.status import STATUS
+from gapath.store.status import STATUS, RunState
 from gapath.store.whole import is_whole
 
 INT, TERM, KILL = signal.SIGINT, signal.SIGTERM, signal.SIGKILL
@@ -26,23 +27,25 @@ SCRIPTS = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
 
 
 class Forked:
-    """The command `gapath` in a process that need not import anything."""
+    """Work, under the signals of `gapath`, in a process that need not import anything.
 
-    def __init__(self, words, errors, before=lambda: None):
+    It writes into a file what standard error is told.
+    """
+
+    def __init__(self, work, errors):
         self.returncode = None
         self.pid = os.fork()
         if not self.pid:
-            self._run(words, errors, before)
+            self._run(work, errors)
 
-    def _run(self, words, errors, before):
+    def _run(self, work, errors):
         code = 99
         try:
             signal.signal(INT, signal.default_int_handler)
             os.dup2(os.open(errors, os.O_WRONLY | os.O_CREAT | os.O_TRUNC), 2)
             os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-            sys.argv, sys.stdout = ["gapath", *words], os.fdopen(1, "w", closefd=False)
-            before()
-            __main__.main()
+            sys.stdout, sys.stderr = (os.fdopen(n, "w", closefd=False) for n in (1, 2))
+            work()
             code = 0
         except SystemExit as stop:
             code = stop.code or 0
@@ -56,6 +59,31 @@ class Forked:
 
     def send_signal(self, number):
         os.kill(self.pid, number)
+
+
+def command(words, before=lambda: None):
+    """The command `gapath`, as work to be forked."""
+
+    def work():
+        sys.argv = ["gapath", *words]
+        before()
+        __main__.main()
+
+    return work
+
+
+def runs_of(gapath, monkeypatch, words):
+    """Give the runs that a command would do."""
+    runs = []
+
+    def take(run, *given, **more):
+        runs.append(run)
+        return Execution(run_folder(run).path, RunState.SKIPPED, [])
+
+    with monkeypatch.context() as patch:
+        patch.setattr("gapath.commands.run.execute", take)
+        assert gapath(*words)[0] == 0
+    return runs
 
 
 def started(script, words, errors, before="pass", **environment):

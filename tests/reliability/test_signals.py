@@ -14,6 +14,7 @@ from ending import (
     TERM,
     WORDS,
     Forked,
+    command,
     ended,
     is_watching,
     started,
@@ -64,7 +65,7 @@ def test_a_run_ends(moment, gapath, tmp_path):
     some, more, number = MOMENTS[moment]
     assert gapath(*some, output=tmp_path / "first")[0] == 0  # so that the child has the kernels
     out, errors = tmp_path / "out", tmp_path / "errors"
-    process = Forked([*some, *more, f"output={out}"], errors)
+    process = Forked(command([*some, *more, f"output={out}"]), errors)
     wait(process, lambda: states(out))
     time.sleep(0.3)
     seconds = ended(process, number)
@@ -79,7 +80,8 @@ def test_a_run_ends(moment, gapath, tmp_path):
 
 def test_no_job_of_a_sweep_starts_while_all_are_checked(tmp_path):
     out, errors = tmp_path / "out", tmp_path / "errors"
-    process = Forked(["-m", *SMALL, "seed=range(100000)", f"output={out}"], errors)
+    sweep = command(["-m", *SMALL, "seed=range(100000)", f"output={out}"])
+    process = Forked(sweep, errors)
     wait(process, lambda: is_watching(process))
     time.sleep(0.3)
     seconds = ended(process, INT)
@@ -133,7 +135,7 @@ def test_a_second_signal_waits_for_nothing(patience, numbers, tmp_path, monkeypa
         statuses.TURN.acquire()  # as by a disk that does not answer, in another thread
 
     monkeypatch.setattr(signals, "PATIENCE", patience)
-    process = Forked([*GENETIC, *LONG, f"output={out}"], errors, hold)
+    process = Forked(command([*GENETIC, *LONG, f"output={out}"], hold), errors)
     wait(process, lambda: is_watching(process))
     first, *more = numbers
     if more:
@@ -161,7 +163,7 @@ def test_a_run_that_is_taking_its_place_is_done(gapath, tmp_path):
     def before():
         whole.publish = late
 
-    process = Forked([*words, f"output={tmp_path / 'out'}"], errors, before)
+    process = Forked(command([*words, f"output={tmp_path / 'out'}"], before), errors)
     wait(process, lambda: False)
     assert (process.returncode, errors.read_text()) == (130, f"gapath: interrupted{KEPT}\n")
     assert states(tmp_path / "out") == ["done"]

@@ -1,16 +1,14 @@
 """A run that was cut short goes on where it was, and comes to what it comes to undisturbed."""
 
-import contextlib
 import hashlib
 import json
 import os
 from dataclasses import replace
 
 import pytest
-from ending import outcome
+from ending import outcome, runs_of
 from test_experiment import ReadsLate, make_run
 
-from gapath.commands import run as cli
 from gapath.recorders.mcap import log
 from gapath.running import experiment, progress
 from gapath.running.experiment import execute, run_folder
@@ -28,10 +26,6 @@ CASES = {
 }
 
 
-class _Taken(BaseException):
-    """The command made a run, which is not to be done: no fault of a component."""
-
-
 @pytest.fixture(autouse=True)
 def small_chunks(monkeypatch):
     """So that logs of a few trials have several."""
@@ -44,16 +38,9 @@ def made(gapath, monkeypatch, tmp_path):
     """Make a run from a command line, for an output folder of its own."""
 
     def make(*words):
-        runs = []
-
-        def take(run, command, **more):
-            runs.append(run)
-            raise _Taken
-
-        with monkeypatch.context() as patch, contextlib.suppress(_Taken):
-            patch.setattr(cli, "execute", take)
-            gapath(*{word.partition("=")[0]: word for word in (*SMALL, *words)}.values())
-        return lambda name: replace(runs[0], output=str(tmp_path / name))
+        words = {word.partition("=")[0]: word for word in (*SMALL, *words)}.values()
+        (run,) = runs_of(gapath, monkeypatch, words)
+        return lambda name: replace(run, output=str(tmp_path / name))
 
     return make
 
