@@ -24,6 +24,7 @@ from gapath.commands import run as cli
 from gapath.mapio.movingai import read_scenario
 from gapath.pipelines.asking import command as asking
 from gapath.pipelines.compare import command as comparing
+from gapath.pipelines.keeping import command as keeping
 from gapath.pipelines.report import cli as report_cli
 from gapath.planning.path import octile_length
 from gapath.running import config
@@ -209,6 +210,8 @@ def check_report(words):
         check_parser(asking.parser(), words[1:])
     elif words[:1] == ["compare"]:
         check_parser(comparing.parser(), words[1:])
+    elif words[0] in ("tag", "note", "prune", "archive"):
+        check_parser(keeping.parser(words[0]), words[1:])
     else:
         check_parser(report_cli._report_parser(), words)
 

@@ -2,9 +2,10 @@
 
 import argparse
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from gapath.errors import printable, require
 from gapath.pipelines.keeping.archive import pack
@@ -18,28 +19,48 @@ from gapath.store.status import now
 def main(arguments: Sequence[str]) -> None:
     """Do what the first argument says; raises InputError for what cannot be done."""
     name, *rest = arguments
-    _COMMANDS[name](rest)
+    _DONE_BY[name](parser(name).parse_args(rest))
 
 
-def _parser(name: str, about: str) -> argparse.ArgumentParser:
-    return argparse.ArgumentParser(f"gapath-report {name}", description=about)
+def parser(name: str) -> argparse.ArgumentParser:
+    """Make the parser of a command's arguments."""
+    made = argparse.ArgumentParser(f"gapath-report {name}", description=_ABOUT[name])
+    add = made.add_argument
+    if name in ("tag", "note"):
+        add("key", metavar="KEY", help="the run; the beginning of its key will do")
+    if name == "tag":
+        add("tags", nargs="*", metavar="TEXT", help="a tag")
+        add("--remove", action="store_true", help="take these tags away instead")
+    elif name == "note":
+        add("text", metavar="TEXT", help="any text; '' takes the note away")
+    elif name == "archive":
+        add("experiment", metavar="EXPERIMENT", help="a folder of DIR")
+        add("file", type=Path, metavar="FILE", help="NAME.tar.gz, not there yet")
+    else:
+        add("--superseded", action="store_true", help="runs in whose place a newer one counts, of "
+            "the same setting, by other code or with more trials")  # fmt: skip
+        add("--failed", action="store_true", help="runs that failed or were interrupted; the "
+            "command that made one could go on")  # fmt: skip
+        add("--tagged", action="append", default=[], metavar="TAG", help="runs with this tag")
+        add("--yes", action="store_true", help="remove them")
+    place: dict[str, Any] = {"nargs": "?"} if name == "prune" else {"metavar": "DIR"}
+    add("outputs" if name == "prune" else "--outputs", type=Path, default=Path("outputs"),
+        help="folder with <experiment>/<key>/ [outputs]", **place)  # fmt: skip
+    return made
 
 
-def _outputs(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--outputs", type=Path, default=Path("outputs"), metavar="DIR", help=_WHERE)
+_ABOUT = {
+    "tag": "Give a run tags, each in quotes if it has spaces, or show what is said of it. Tags "
+    "change nothing that is hashed.",
+    "note": "Write a note on a run, in the place of the one that it has.",
+    "prune": "List runs that can go, and remove them with --yes: superseded, failed and "
+    "interrupted ones unless it is said which. What has a tag or a note goes only by --tagged.",
+    "archive": "Pack the finished runs of an experiment into one file, which unpacks into a "
+    "folder of outputs: tar -xzf FILE -C DIR.",
+}
 
 
-_WHERE = "folder with <experiment>/<key>/ [outputs]"
-
-
-def _tag(arguments: Sequence[str]) -> None:
-    parser = _parser("tag", "Give a run tags, each in quotes if it has spaces, or show what is "
-                     "said of it. Tags change nothing that is hashed.")  # fmt: skip
-    parser.add_argument("key", metavar="KEY", help="the run; the beginning of its key will do")
-    parser.add_argument("tags", nargs="*", metavar="TEXT", help="a tag")
-    parser.add_argument("--remove", action="store_true", help="take these tags away instead")
-    _outputs(parser)
-    given = parser.parse_args(list(arguments))
+def _tag(given: argparse.Namespace) -> None:
     require(bool(given.tags) or not given.remove, "--remove", "no tag", "which tags")
 
     def change(said: Said) -> Said:
@@ -53,12 +74,7 @@ def _tag(arguments: Sequence[str]) -> None:
     _say(given, change)
 
 
-def _note(arguments: Sequence[str]) -> None:
-    parser = _parser("note", "Write a note on a run, in the place of the one that it has.")
-    parser.add_argument("key", metavar="KEY", help="the run; the beginning of its key will do")
-    parser.add_argument("text", metavar="TEXT", help="any text; '' takes the note away")
-    _outputs(parser)
-    given = parser.parse_args(list(arguments))
+def _note(given: argparse.Namespace) -> None:
     _say(given, lambda said: replace(said, note=given.text))
 
 
@@ -69,20 +85,7 @@ def _say(given: argparse.Namespace, change: Callable[[Said], Said]) -> None:
     print(printable(f"{run.parent.name}/{run.name}: {'; '.join(told) or 'no tag, no note'}"))
 
 
-def _prune(arguments: Sequence[str]) -> None:
-    parser = _parser("prune", "List runs that can go, and remove them with --yes: superseded, "
-                     "failed and interrupted ones unless it is said which. What has a tag or a "
-                     "note goes only by --tagged.")  # fmt: skip
-    parser.add_argument("outputs", type=Path, nargs="?", default=Path("outputs"), help=_WHERE)
-    parser.add_argument("--superseded", action="store_true", help="runs in whose place a newer "
-                        "one counts, of the same setting, by other code or with more "
-                        "trials")  # fmt: skip
-    parser.add_argument("--failed", action="store_true", help="runs that failed or were "
-                        "interrupted; the command that made one could go on")  # fmt: skip
-    parser.add_argument("--tagged", action="append", default=[], metavar="TAG",
-                        help="runs with this tag")  # fmt: skip
-    parser.add_argument("--yes", action="store_true", help="remove them")
-    given = parser.parse_args(list(arguments))
+def _prune(given: argparse.Namespace) -> None:
     plain = not (given.superseded or given.failed or given.tagged)
     why = Why(given.superseded or plain, given.failed or plain, set(given.tagged))
     gone, kept = choose(find_runs(given.outputs), why)
@@ -102,13 +105,7 @@ def _prune(arguments: Sequence[str]) -> None:
     print(f"{count} runs, {file_size(total)}: {end}")
 
 
-def _archive(arguments: Sequence[str]) -> None:
-    parser = _parser("archive", "Pack the finished runs of an experiment into one file, which "
-                     "unpacks into a folder of outputs: tar -xzf FILE -C OUTPUTS.")  # fmt: skip
-    parser.add_argument("experiment", metavar="EXPERIMENT", help="a folder of OUTPUTS")
-    parser.add_argument("file", type=Path, metavar="FILE", help="NAME.tar.gz, not there yet")
-    _outputs(parser)
-    given = parser.parse_args(list(arguments))
+def _archive(given: argparse.Namespace) -> None:
     packed = pack(given.outputs, given.experiment, given.file)
     for run in packed.left_out:
         _tell(f"left out {run.name}: {run.fault}")
@@ -120,6 +117,4 @@ def _tell(line: str) -> None:
     print(printable(line), file=sys.stderr, flush=True)
 
 
-_COMMANDS: Mapping[str, Callable[[Sequence[str]], None]] = {
-    "tag": _tag, "note": _note, "prune": _prune, "archive": _archive,
-}  # fmt: skip
+_DONE_BY = {"tag": _tag, "note": _note, "prune": _prune, "archive": _archive}
