@@ -241,7 +241,7 @@ class _Graph:
         return self._properties(run.settings, "setting")
 
     def _environment(self, known: Manifest) -> list[Any]:
-        origin = flatten(getattr(known, "provenance", None) or {}, "")
+        origin = flatten(known.provenance or {})
         return self._properties({**known.versions, **origin}, "environment")
 
     def _figures(self, run: RunRecord) -> list[Any]:

@@ -87,6 +87,7 @@ def _packed(run: RunRecord, folder: Path) -> Packed:
     manifest = replace(
         known,
         command=without_folders(known.command),
+        provenance=without_folders(known.provenance),
         map_inputs=told(known.map_inputs),
         method_inputs=told(known.method_inputs),
         late_inputs=told(known.late_inputs),
