@@ -119,8 +119,8 @@ def _problem(
     if load("map", kind).__module__.startswith("gapath.mapio."):
         kind = reader_of(path, "map.path") if kind == "file" else kind
         grid = replace(grid, name=map_name(Path(path).stem, own), source=kind, instance=0)
-    start = _field(own.get("start")) or grid.start
-    target = _field(own.get("target")) or grid.target
+    start = _place(own, "start") or grid.start
+    target = _place(own, "target") or grid.target
     grid = replace(grid, start=start, target=target)
     whole = "its start, target and problems"
     remarks = [f"the map {grid.name}, {whole}, is what the log has of {path}", *told]
@@ -159,8 +159,14 @@ def _known(settings: Mapping[str, Any], logged: Problem) -> tuple[dict[str, Grid
     return maps, told
 
 
-def _field(value: Any) -> Field | None:
-    return None if value is None else (int(value[0]), int(value[1]))
+def _place(settings: Mapping[str, Any], name: str) -> Field | None:
+    """Give the start or target that a map of somebody's own is set to have."""
+    value = settings.get(name)
+    if value is None:
+        return None
+    good = isinstance(value, list) and [*map(type, value)] == [int, int]
+    require(good, f"map.{name}", value, "two integers [x, y]")
+    return value[0], value[1]
 
 
 def _method(task: Task, settings: Mapping[str, Any], logged: str) -> tuple[str, list[str]]:

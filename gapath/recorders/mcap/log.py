@@ -88,7 +88,8 @@ class LogWriter:
                 raise InputError(
                     "recorder.mcap",
                     f"{len(data)} bytes in a message, {self._bytes} in the run",
-                    f"at most {MAX_CHUNK // 2} and {MAX_LOG // 2}: fewer epochs or trials",
+                    f"at most {MAX_CHUNK // 2} and {MAX_LOG // 2}: a smaller map, or fewer epochs "
+                    "or trials",
                 )
             number, time = self._count, step * NS_PER_STEP
             self._count += 1
