@@ -149,3 +149,17 @@ def test_a_run_folder_or_its_manifest_stands_for_its_log(gapath, tmp_path, capfd
     assert gapath(*DRIVE, "recorder=none", "name=bare")[0] == 0
     (bare,) = (path for path in tmp_path.glob("out/bare/*") if path.is_dir())
     assert "got a run without a log, expected one with recorder=mcap" in call("verify", bare)[2]
+
+
+@pytest.mark.parametrize("limit", ["MAX_CHUNK", "MAX_LOG"])
+def test_a_map_too_large_for_a_log_is_one_line(limit, gapath, monkeypatch, tmp_path):
+    known = tmp_path / "known.map"
+    rows = "\n".join("." * 40 for _ in range(30))
+    known.write_text(f"type octile\nheight 30\nwidth 40\nmap\n{rows}\n")
+    monkeypatch.setattr(f"gapath.recorders.mcap.log.{limit}", 5000)
+    code, _, err = gapath(
+        "task=drive", "map=field_rooms", "map.width=40", "map.height=30", "recorder=mcap",
+        f"drive.known_map={known}", "navigator=replan_astar",
+    )  # fmt: skip
+    assert code == 2 and err.count("\n") == 1
+    assert "recorder.mcap: got " in err and "a smaller map, or fewer epochs or trials" in err

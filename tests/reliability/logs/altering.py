@@ -276,19 +276,20 @@ def _consistent(parts):
     variants |= {name: [*lines, f'{name}: "by nobody"\n'] for name in others}
     for what, new in variants.items():
         named = ("settings", "metadata")
-        yield Altered(f"everywhere: {what}", named, _telling(parts, "settings", "".join(new)))
+        yield Altered(f"everywhere: {what}", named, telling(parts, "settings", "".join(new)))
     for name in ("method", "experiment"):
-        yield Altered(f"everywhere: {name}", ("mine",), _telling(parts, name, "mine"))
+        lie = telling(parts, name, "mine", trials=name == "method")
+        yield Altered(f"everywhere: {name}", ("mine",), lie)
 
 
-def _telling(parts, name, value):
+def telling(parts, name, value, trials=True):
     """Give a log that says something of its run in the metadata, and at each trial's start."""
     (start,) = [e.id for e in parts.entries if isinstance(e, Channel) and e.topic == TRIAL]
     changed = []
     for entry in parts.entries:
         if isinstance(entry, Metadata) and entry.name == description.NAME:
             entry = replace(entry, metadata=entry.metadata | {name: value})
-        elif isinstance(entry, Message) and entry.channel_id == start and name != "experiment":
+        elif isinstance(entry, Message) and entry.channel_id == start and trials:
             message = TYPES.deserialize_cdr(entry.data, TOPICS[TRIAL])
             setattr(message, name, value)
             data = TYPES.serialize_cdr(message, TOPICS[TRIAL], little_endian=True)

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import zstandard
+from altering import telling
 from logs_of_runs import RUNS, log_of, told
 from mcap.records import Metadata
 from scale import rounds
@@ -213,3 +214,37 @@ def test_only_regular_files_are_opened(kind, tmp_path, capsys):
     for words in (["info"], ["verify"], ["salvage", "-o", tmp_path / "saved.mcap"], ["rerun"]):
         code, out, err = told(capsys, words[0], path, *words[1:])
         assert ((code, out) == (2, "") and "regular" in err) or kind == "folder"
+
+
+@pytest.mark.parametrize("version", ["4", "5"])
+def test_settings_of_recorders_are_said_to_be_their_authors(version, plan, tmp_path, capsys):
+    path, parts = tmp_path / "run.mcap", taken_apart(plan)
+    (text,) = [e.metadata["settings"] for e in parts.entries if isinstance(e, Metadata)]
+    for setting in ("", 'recorder.mcap.kind: "mcap"\n'):
+        settings = text.replace("\nseed:", f"\n{setting}seed:")
+        old = telling(parts, "gapath_log_version", version, trials=False)
+        put_together(telling(old, "settings", settings), path)
+        code, out, _ = told(capsys, "verify", path)
+        assert code == 0 and f"made with log version {version} (6 here)" in out, out
+        assert ("the settings of its recorders are its author's" in out) == bool(setting)
+
+
+@pytest.mark.parametrize(
+    "version", ["", "1.0; reproduced", "x" * 100, "1 (2 here)", "\x1b[2J", "ä"]
+)
+def test_a_version_is_no_sentence(version, plan, tmp_path, capsys):
+    path = tmp_path / "run.mcap"
+    put_together(telling(taken_apart(plan), "version/numpy", version, trials=False), path)
+    code, out, err = told(capsys, "verify", path)
+    assert (code, out) == (2, "") and "metadata, version/numpy" in err
+
+
+def test_a_version_that_is_unknown_is_told_from_none(plan, tmp_path, capsys):
+    path = tmp_path / "run.mcap"
+    parts = telling(taken_apart(plan), "version/python", "unknown", trials=False)
+    put_together(parts, path)
+    assert "made with python unknown (" in told(capsys, "verify", path)[1]
+    for entry in parts.entries:
+        getattr(entry, "metadata", {}).pop("version/python", None)
+    put_together(parts, path)
+    assert "made with no version of python told" in told(capsys, "verify", path)[1]
