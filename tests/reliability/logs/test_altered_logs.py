@@ -18,7 +18,7 @@ from taking_apart import Parts, put_together, taken_apart
 
 from gapath.recorders import mcap
 from gapath.recorders.mcap import description
-from gapath.running import again
+from gapath.running import verify
 
 
 @pytest.fixture(scope="module", params=[*RUNS, *OF_FILES, *BROKEN])
@@ -69,7 +69,7 @@ def is_prefix(path, messages):
 @pytest.fixture(autouse=True)
 def made_once(monkeypatch):
     """Make a run of the same settings once: that takes most of the time, and depends on no more."""
-    make, made = again.made_again, {}
+    make, made = verify.made_again, {}
 
     def once(logged, kernels):
         key = description.metadata(logged)["sha256"]
@@ -77,7 +77,7 @@ def made_once(monkeypatch):
             made[key] = make(logged, kernels)
         return made[key]
 
-    monkeypatch.setattr(again, "made_again", once)
+    monkeypatch.setattr(verify, "made_again", once)
 
 
 def with_other_versions(parts):
