@@ -190,8 +190,8 @@ def at_random(process, command, length, chance):
     wait(process, lambda: time.monotonic() > end, 600.0)
 
 
-def until_whole(command, expected, length, chance, toll):
-    """Kill a command and start it again until it ends by itself, and compare."""
+def until_whole(command, expected, length, chance, toll, enough):
+    """Kill a command and start it again until it ends by itself, or has to, and compare."""
     shutil.rmtree(command.out, ignore_errors=True)
     toll.commands += 1
     process = None
@@ -199,7 +199,10 @@ def until_whole(command, expected, length, chance, toll):
         before = {path: (kept(folder), whole(path)) for path, folder in command.folders().items()}
         running = states(command.out).count("running")
         process = command.begun()
-        at_random(process, command, length, chance)
+        if toll.kills < enough:
+            at_random(process, command, length, chance)
+        else:
+            wait(process, lambda: False, 600.0)
         way = chance.choice([*WAYS])
         seconds = ended(process, *WAYS[way]) if process.poll() is None else 0.0
         if process.returncode:
@@ -259,7 +262,7 @@ def tried(command, kills, chance):
     toll = Toll()
     expected, length = command.undisturbed()
     while toll.kills < kills:
-        until_whole(command, expected, length, chance, toll)
+        until_whole(command, expected, length, chance, toll, kills)
     return toll
 
 
@@ -279,7 +282,7 @@ def test_forked_commands_killed_at_random_moments(name, gapath, tmp_path, monkey
 
         return Forked(work, command.errors)
 
-    toll = tried(Command(tmp_path / "killed", start), rounds(4, 150), random.Random(name))
+    toll = tried(Command(tmp_path / "killed", start), rounds(5, 150), random.Random(name))
     print(f"{name}, forked: {toll}")
     swamped = os.getloadavg()[0] > 4 * os.cpu_count()
     assert toll.seconds and (swamped or statistics.median(toll.seconds) < PROMISED)
