@@ -2,6 +2,7 @@
 
 import argparse
 import gc
+import logging
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -41,6 +42,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         The exit code: 0, 2 for a folder that holds nothing to report.
     """
     arguments = list(sys.argv[1:] if argv is None else argv)
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # where its cache lies is no news
     try:
         if arguments[:1] == ["runs"]:
             from gapath.pipelines.asking import command  # pandas takes half a second to start

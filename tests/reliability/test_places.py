@@ -28,7 +28,8 @@ BOUNDING_SET_DROP, DAC_OVERRIDE, DAC_READ_SEARCH = 24, 1, 2
 def command(name, *words, before=(), **changes):
     """Run one of gapath's commands in a place; its exit code and error output."""
     environment = {key: value for key, value in os.environ.items() if key not in LEFT}
-    changes["env"] = environment | {"NUMBA_DISABLE_JIT": rounds("1", "0")} | changes["env"]
+    plain = {} if name == "main" and rounds(False, True) else {"NUMBA_DISABLE_JIT": "1"}
+    changes["env"] = environment | plain | changes["env"]  # to compile once a place is enough
     done = subprocess.run(
         [*before, sys.executable, "-W", "ignore", "-c", START.format(name), *map(str, words)],
         capture_output=True,
