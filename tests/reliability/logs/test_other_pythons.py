@@ -44,6 +44,7 @@ def said_by(python, compiled, code, *words):
     process = subprocess.run(
         [command, "-W", "ignore", "-c", code, *map(str, words)],
         env=os.environ | environment | switches,
+        cwd=HERE,  # which comes before everything else: not a checkout
         capture_output=True,
         text=True,
         check=False,
