@@ -68,6 +68,11 @@ reproduce: $(VENV)/ready ## do every published experiment, small, and compare wi
 reliability: $(VENV)/ready ## try at length what docs/reliability.md promises; a line for each harness
 	@GAPATH_RELIABILITY=long $(BIN)/python -m pytest -n 0 --figures tests/reliability
 
+# Kernels on vectors, which only the compiler understands, are left out.
+.PHONY: mutants
+mutants: $(VENV)/ready ## change kernels one place at a time; which changes does no test notice?
+	@nice -n 19 $(BIN)/python tests/kernels/mutants.py
+
 # Nothing sees into a compiled kernel, so the tests of kernels run once more without the compiler:
 # some two minutes. test_evaluation would take many more, as would planners and drives, whose kernels
 # a test of test_golden runs without it. Kernels on vectors, which only the compiler understands,

@@ -7,6 +7,7 @@
 import contextlib
 import hashlib
 import io
+import itertools
 import json
 import os
 import shlex
@@ -24,9 +25,10 @@ from gapath.commands import run as cli
 from gapath.components import build
 from gapath.discovery import yaml_values
 from gapath.grid import GridMap
+from gapath.kernels.lines import cuts_corner
 from gapath.mapio.generated import CLASSES as GENERATED
 from gapath.mapio.reconstructed import CLASSES
-from gapath.problem import Problem
+from gapath.problem import CornerCutting, Problem
 from gapath.recorders import mcap
 from gapath.running.config import Run, conf_folder
 from gapath.running.experiment import execute
@@ -217,7 +219,15 @@ def small(folder):
         results(folder / "s04", "s04_sp06", "sedighi", 1, max_epochs=20, population=30),
         results(folder / "m22", "room", "visibility_ga", 2, **SMALL, robot_radius=1),
         results(folder / "m22_small", "room", "visibility_ga_resized", 2, **SMALL, **OTHER),
+        corners(),
     ]
+
+
+def corners():
+    """Whether steps between two obstacles, one and none cut a corner, by the rule."""
+    table = GridMap("corners", np.array([[0.5, 1.0], [1.0, 0.5], [0.5, 0.5]])).table
+    steps = itertools.product(((0, 0, 1, 1), (0, 1, 1, 2), (0, 2, 1, 1)), CornerCutting)
+    return [bool(cuts_corner(table, *step, int(rule))) for step, rule in steps]
 
 
 @pytest.mark.parametrize(

@@ -1,10 +1,9 @@
 """Change kernels one place at a time, and tell which changes no test notices: `make mutants`.
 
 Without the compiler kernels are functions of Python. One pytest has collected all tests; for each
-mutant it is forked, the changed code is put into the functions where they are, so that whoever
+mutant it is forked, what was changed is put where the functions and constants are, so that whoever
 imported them has it, and the tests that call the function are run until one fails. No file is
-written. Mutants that run out of their time count as killed. Left out is what only the compiler
-understands: `LEFT_OUT`.
+written. A mutant that runs out of its time counts as killed.
 """
 
 import argparse
@@ -18,76 +17,62 @@ import resource
 import sys
 import time
 import types
-from collections import Counter
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, Phase, settings
 
 ROOT = Path(__file__).parents[2]
 KERNELS = ROOT / "gapath" / "kernels"
-TESTS = "tests/kernels"
+PLANNERS = [f"tests/planners/test_{name}.py" for name in ("bspline_ga", "row_column_ga")]
 
 LEFT_OUT = {"jit", "kg18/evaluation", "kg18/field_lanes", "kg18/lanes", "kg18/vectors"}
-"""The decorator, and vectors."""
+"""The decorator, and vectors, which only the compiler understands."""
 
-SLOW = 5
-"""Seconds: a test that takes longer without the compiler is left out."""
-BUDGET = 8
-"""Seconds of tests for a mutant: those that call the fewest kernels go first."""
+SLOW, BUDGET = 5, 5
+"""Seconds of computing for a test, else it is left out, and for a mutant's tests: those that call
+the fewest kernels go first."""
+FEW = 20
+"""Examples by hypothesis of a test that would be left out."""
 MEMORY = 8 << 30
 LEAST = 10
 """Mutants of each module, if it has as many."""
 
+BOTH_WAYS = "Add Sub, LShift RShift, BitAnd BitOr, And Or, Eq NotEq, Is IsNot, Mult FloorDiv"
+ONE_WAY = "Div Mult, Mod FloorDiv, BitXor BitOr, Lt LtE GtE, LtE Lt Gt, Gt GtE LtE, GtE Gt Lt"
 OPERATORS = {
-    ast.Add: [ast.Sub],
-    ast.Sub: [ast.Add],
-    ast.Mult: [ast.FloorDiv],
-    ast.FloorDiv: [ast.Mult],
-    ast.Div: [ast.Mult],
-    ast.Mod: [ast.FloorDiv],
-    ast.LShift: [ast.RShift],
-    ast.RShift: [ast.LShift],
-    ast.BitAnd: [ast.BitOr],
-    ast.BitOr: [ast.BitAnd],
-    ast.BitXor: [ast.BitOr],
-    ast.And: [ast.Or],
-    ast.Or: [ast.And],
-    ast.Lt: [ast.LtE, ast.GtE],
-    ast.LtE: [ast.Lt, ast.Gt],
-    ast.Gt: [ast.GtE, ast.LtE],
-    ast.GtE: [ast.Gt, ast.Lt],
-    ast.Eq: [ast.NotEq],
-    ast.NotEq: [ast.Eq],
-    ast.Is: [ast.IsNot],
-    ast.IsNot: [ast.Is],
+    getattr(ast, old): [getattr(ast, name) for name in new]
+    for old, *new in (
+        *(words.split() for words in (BOTH_WAYS + ", " + ONE_WAY).split(",")),
+        *(words.split()[::-1] for words in BOTH_WAYS.split(",")),
+    )
 }
 NOT_RUN = {"annotation", "returns", "decorator_list"}
 
 
-def one_more(node, by=1):
-    return ast.BinOp(node, ast.Add(), ast.Constant(by))
+def one_more(node):
+    return ast.BinOp(node, ast.Add(), ast.Constant(1))
 
 
-def other_result(value, annotation):
-    """Results that are not what a function gives, by the type that it says."""
+def other_results(value, annotation):
+    """Give results that are not the function's, by the type that it says."""
     match annotation:
         case ast.Name("int" | "float"):
             yield one_more(value)
         case ast.Name("bool"):
             yield ast.UnaryOp(ast.Not(), value)
         case ast.Subscript(ast.Name("tuple"), ast.Tuple(kinds)) if isinstance(value, ast.Tuple):
-            for i, kind in enumerate(kinds[: len(value.elts)]):
-                for other in other_result(value.elts[i], kind):
+            for i, (one, kind) in enumerate(zip(value.elts, kinds, strict=False)):
+                for other in other_results(one, kind):
                     yield ast.Tuple([*value.elts[:i], other, *value.elts[i + 1 :]], ast.Load())
 
 
 def others(node, function):
-    """Give what may stand for a node, as fields of it with other values, or as another node."""
+    """Give what may stand for a node: other fields of it, or another node."""
     match node:
         case ast.BinOp() | ast.AugAssign() | ast.BoolOp():
-            for operator in OPERATORS.get(type(node.op), []):
-                yield {"op": operator()}
+            yield from ({"op": operator()} for operator in OPERATORS.get(type(node.op), []))
         case ast.Compare():
             for i, old in enumerate(node.ops):
                 for operator in OPERATORS.get(type(old), []):
@@ -98,12 +83,10 @@ def others(node, function):
             yield {"value": not value}
         case ast.Constant(int(value) | float(value)):
             yield from ({"value": value + by} for by in (1, -1))
-        case ast.Break():
-            yield ast.Continue()
-        case ast.Continue():
-            yield ast.Break()
+        case ast.Break() | ast.Continue():
+            yield ast.Continue() if isinstance(node, ast.Break) else ast.Break()
         case ast.Return() if node.value and function:
-            yield from ({"value": v} for v in other_result(node.value, function.returns))
+            yield from ({"value": v} for v in other_results(node.value, function.returns))
         case ast.Subscript(slice=ast.Name()):
             yield {"slice": one_more(node.slice)}
         case ast.Subscript(slice=ast.Tuple(at)):
@@ -114,39 +97,31 @@ def others(node, function):
 
 
 def mutants(text):
-    """Give each mutant of a module: function or None, line, old and new text, the whole tree.
+    """Give each mutant of a module: function or None, line:column, old and new text, the tree.
 
     The tree is one and the same, changed until the next one is asked for.
     """
     tree = ast.parse(text)
 
     def within(node, function):
-        for name, field in ast.iter_fields(node):
-            if name in NOT_RUN:
-                continue
-            for i, child in enumerate(field if isinstance(field, list) else [field]):
-                if not isinstance(child, ast.AST) or isinstance(child, ast.ClassDef):
+        for name, field in list(ast.iter_fields(node)):
+            several = isinstance(field, list)
+            for i, child in enumerate(field if several else [field]):
+                if name in NOT_RUN or not isinstance(child, ast.AST):
                     continue
                 inside = function or (child if isinstance(child, ast.FunctionDef) else None)
-                for other in others(child, inside):
-                    new = other
-                    if isinstance(other, dict):
-                        new = type(child)(**dict(ast.iter_fields(child)) | other)
+                for new in others(child, inside):
+                    if isinstance(new, dict):
+                        new = type(child)(**dict(ast.iter_fields(child)) | new)
                     ast.copy_location(new, child)
-                    put(node, name, i, new)
-                    yield inside and inside.name, child.lineno, ast.unparse(child), ast.unparse(new)
-                    put(node, name, i, child)
+                    setattr(node, name, [*field[:i], new, *field[i + 1 :]] if several else new)
+                    place = f"{child.lineno}:{child.col_offset + 1}"
+                    yield inside and inside.name, place, ast.unparse(child), ast.unparse(new)
+                    setattr(node, name, field)
                 yield from within(child, inside)
 
     for mutant in within(tree, None):
         yield *mutant, ast.fix_missing_locations(tree)
-
-
-def put(node, name, i, child):
-    if isinstance(getattr(node, name), list):
-        getattr(node, name)[i] = child
-    else:
-        setattr(node, name, child)
 
 
 class Loader(importlib.abc.InspectLoader):
@@ -163,14 +138,13 @@ class Loader(importlib.abc.InspectLoader):
 
 
 def replace(module, tree):
-    """Put the functions and constants of a changed module where those that are there have gone.
+    """Put a changed module's functions and constants in the place of those that are there.
 
     What other modules have computed of a constant stays as it was.
     """
     loader = Loader(compile(tree, module.__file__, "exec"))
-    changed = importlib.util.module_from_spec(
-        importlib.util.spec_from_loader(module.__name__, loader, origin=module.__file__)
-    )
+    spec = importlib.util.spec_from_loader(module.__name__, loader, origin=module.__file__)
+    changed = importlib.util.module_from_spec(spec)
     loader.exec_module(changed)
     for name, new in vars(changed).items():
         old = vars(module).get(name)
@@ -190,10 +164,8 @@ def forked(work, seconds):
     process = os.fork()
     if not process:
         try:
-            os.close(reading)
             resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
             resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
             for stream in (1, 2):
                 os.dup2(os.open(os.devnull, os.O_WRONLY), stream)
             result = json.dumps(work()).encode()
@@ -208,8 +180,16 @@ def forked(work, seconds):
     return json.loads(result) if result else None
 
 
+def fewer_examples(item):
+    """Let hypothesis draw less for a test; give whether it is one of hypothesis."""
+    test, name = item.obj, "_hypothesis_internal_use_settings"
+    if hasattr(test, name):
+        setattr(test, name, settings(getattr(test, name), max_examples=FEW))
+    return hasattr(test, name)
+
+
 class Trial:
-    """A pytest that tries mutants instead of running its tests once."""
+    """What a pytest does with its tests instead of running them once."""
 
     def __init__(self, given):
         self.given, self.failed = given, False
@@ -218,51 +198,48 @@ class Trial:
         self.failed |= report.failed
 
     def passes(self, items):
-        for item, after in zip(items, [*items[1:], None], strict=True):
-            item.config.hook.pytest_runtest_protocol(item=item, nextitem=after)
+        for item in items:
+            item.config.hook.pytest_runtest_protocol(item=item, nextitem=None)
             if self.failed:
-                return False
-        return True
+                break
+        return not self.failed
 
     def traced(self, item):
         """Run a test; give whether it passes, its seconds, and the kernels that it calls."""
-        called = set()
-        begin = time.process_time()
+        called, begin = set(), time.process_time()
         sys.settrace(lambda frame, event, _: called.add(frame.f_code))
         passed = self.passes([item])
         sys.settrace(None)
-        took = time.process_time() - begin
         kernels = {(code.co_filename, code.co_name) for code in called}
+        took = time.process_time() - begin
         return passed, took, [k for k in kernels if k[0].startswith(str(KERNELS))]
 
     def pytest_runtestloop(self, session):
-        known, left = [], []  # tests: kernels, seconds, item
+        self.known = []  # of each test: kernels, seconds, item
         for item in session.items:
-            passed, took, kernels = forked(lambda item=item: self.traced(item), SLOW) or (0, 0, 0)
-            if passed:
-                known.append(({tuple(k) for k in kernels}, took, item))
+            found = forked(lambda item=item: self.traced(item), SLOW)
+            if not found and fewer_examples(item):
+                found = forked(lambda item=item: self.traced(item), SLOW)
+            if not found:
+                print(f"slow, left out: {item.nodeid}")
+            elif not found[0]:
+                raise pytest.UsageError(f"{item.nodeid} fails without the compiler")
             else:
-                left.append((item.nodeid, passed is False))
-        for name, failed in left:
-            print(f"{'fails' if failed else 'slow, left out'}: {name}")
-        if any(failed for _, failed in left):
-            raise pytest.UsageError("a test fails without the compiler and with no mutant")
-        self.known = sorted((k for k in known if k[0]), key=lambda test: (len(test[0]), test[1]))
-        self.report()
+                self.known.append(({tuple(kernel) for kernel in found[2]}, found[1], item))
+        self.known.sort(key=lambda test: (len(test[0]), test[1]))
+        self.try_all()
         return True
 
     def tests(self, file, function):
-        """Tests of a function, or of all that is in a module, or of all kernels."""
-        for of in (
-            lambda kernels: (file, function) in kernels,
-            lambda kernels: function is None and any(file == at for at, _ in kernels),
-            lambda kernels: function is None,
-        ):
+        """Give the tests of a function; of what is in none, those of its module, else of all."""
+        calls = [lambda kernels: (file, function) in kernels]
+        if function is None:
+            calls = [lambda kernels: any(file == at for at, _ in kernels), len]
+        for of in calls:
             found, total = [], 0.0
             for kernels, took, item in self.known:
                 if of(kernels) and (not found or total + took <= BUDGET):
-                    found.append(item)
-                    total += took
+                    found, total = [*found, item], total + took
             if found:
                 return found, total
         return [], 0.0
@@ -274,41 +251,33 @@ class Trial:
             replace(module, tree)
             return self.passes(found)
 
-        return not found or forked(trial, int(3 + 4 * took))
+        return forked(trial, int(2 + 2 * took))
 
-    def report(self):
-        modules = {
-            file.relative_to(KERNELS).with_suffix("").as_posix(): file
-            for file in sorted(KERNELS.rglob("*.py"))
-        }
-        texts = {
-            name: file.read_text("utf-8")
-            for name, file in modules.items()
-            if name not in LEFT_OUT and not name.endswith("__init__") and self.given.only in name
-        }
+    def try_all(self):
+        texts = {}
+        for file in sorted(KERNELS.rglob("[!_]*.py")):
+            name = file.relative_to(KERNELS).with_suffix("").as_posix()
+            if name not in LEFT_OUT and self.given.only in name:
+                texts[name] = file.read_text("utf-8")
         counts = {name: sum(1 for _ in mutants(text)) for name, text in texts.items()}
-        share = min(1.0, self.given.tried / sum(counts.values()))
-        print(f"{sum(counts.values())} mutants of {len(counts)} modules", flush=True)
-        totals = Counter()
+        every, tried, survived = sum(counts.values()), 0, 0
         for name, text in texts.items():
             module = importlib.import_module(f"gapath.kernels.{name.replace('/', '.')}")
             if not self.survives(module, None, ast.parse(text)):
                 raise pytest.UsageError(f"{name}: a test fails though nothing is changed")
-            tried = min(counts[name], max(LEAST, round(share * counts[name])))
-            drawn = random.Random(f"{self.given.seed} {name}").sample(range(counts[name]), tried)
-            lines = []
-            for i, (function, line, old, new, tree) in enumerate(mutants(text)):
-                if i in drawn and self.survives(module, function, tree):
-                    none = "" if self.tests(module.__file__, function)[0] else "  (no test)"
-                    lines.append(
-                        f"  {modules[name].relative_to(ROOT)}:{line}  {old} -> {new}{none}"
-                    )
-            totals.update(tried=tried, survived=len(lines))
-            print(
-                f"{name}: {tried} tried, {tried - len(lines)} killed", *lines, sep="\n", flush=True
+            share = round(counts[name] * self.given.tried / every)
+            drawn = random.Random(f"{self.given.seed} {name}").sample(
+                range(counts[name]), min(counts[name], max(LEAST, share))
             )
-        killed = totals["tried"] - totals["survived"]
-        print(f"all: {totals['tried']} tried, {killed} killed, {killed / totals['tried']:.1%}")
+            lines = [
+                f"  {name}.py:{place}  {old} -> {new}"
+                for i, (function, place, old, new, tree) in enumerate(mutants(text))
+                if i in drawn and self.survives(module, function, tree)
+            ]
+            killed = len(drawn) - len(lines)
+            tried, survived = tried + len(drawn), survived + len(lines)
+            print(f"{name}: {len(drawn)} tried, {killed} killed", *lines, sep="\n", flush=True)
+        print(f"{tried} of {every} tried, {tried - survived} killed: {1 - survived / tried:.1%}")
 
 
 def main():
@@ -316,25 +285,22 @@ def main():
     words.add_argument("--tried", type=int, default=1500, help="mutants, drawn from all modules")
     words.add_argument("--seed", type=int, default=1, help="draws them")
     words.add_argument("--only", default="", help="modules whose name holds this, memetic/walls")
-    words.add_argument("--tests", default=TESTS, help="a folder or file of tests")
+    words.add_argument("--tests", nargs="+", default=["tests/kernels", *PLANNERS])
     given = words.parse_args()
     os.chdir(ROOT)
     os.environ["NUMBA_DISABLE_JIT"] = "1"
     sys.dont_write_bytecode = True
-    from hypothesis import HealthCheck, Phase, settings
-
     settings.register_profile(
         "mutants",
         deadline=None,
         derandomize=True,
         database=None,
-        max_examples=100,
         phases=[Phase.explicit, Phase.generate],  # one failure will do, however large
         suppress_health_check=list(HealthCheck),
     )
-    plain = ["-o", "addopts=", "-p", "no:terminal", "-p", "no:cacheprovider", "-p", "no:xdist"]
-    own = ["-s", "--hypothesis-profile=mutants", "-W", "ignore"]
-    return pytest.main([*plain, *own, given.tests], plugins=[Trial(given)])
+    without = ["-pno:terminal", "-pno:cacheprovider", "-pno:xdist"]
+    plain = ["-o", "addopts=", "-s", "-W", "ignore", "--hypothesis-profile=mutants", *without]
+    return pytest.main([*plain, *given.tests], [Trial(given)])
 
 
 if __name__ == "__main__":

@@ -168,3 +168,38 @@ def test_who_follows_a_path_stops_where_an_obstacle_comes_in_sight():
     news, looks = np.empty((2, table.size), dtype=np.int64), np.empty((2, 59), dtype=np.int64)
     least = np.array([1 << 30])
     assert follow(table, known, seen, path, 59, -1, 0, 5, False, news, looks, least) == 36
+
+
+def known_but_for(picture, known, path, layers=1):
+    """Follow a path across a map of which all but the difference is known; give looks and news."""
+    table, known = (GridMap("p", np.array(rows)).table.copy() for rows in (picture, known))
+    seen, path = np.ones(table.shape, dtype=np.bool_), np.array(path, dtype=np.int32)
+    news, least = np.empty((2, table.size), dtype=np.int64), np.array([1 << 30])
+    looks = np.empty((2, len(path) - 1), dtype=np.int64)
+    sees = (layers, False, news, looks, least)
+    count = follow(table, known, seen, path, len(path) - 1, -1, 0, *sees)
+    return count, looks[:, :count].tolist(), news[0, : looks[1, count - 1]].tolist()
+
+
+def test_who_follows_a_path_stops_at_what_alone_is_new():
+    free, wall = [0.5] * 6, [0.5, 0.5, 0.5, 1.0, 0.5, 0.5]
+    path = [(x, 0) for x in range(6)]
+    assert known_but_for([wall], [free], path) == (3, [[0, 0, 0], [0, 0, 1]], [3])
+    assert known_but_for([wall], [wall], path) == (1, [[0], [0]], [])  # it was known before
+    assert known_but_for([free], [wall], path, layers=5) == (5, [[0] * 5, [1] * 5], [3])
+
+
+@pytest.mark.parametrize(
+    ("heading", "numbers"),
+    [
+        (0, [12, 8, 13, 18, 4, 9, 14, 19, 24]),
+        (2, [12, 16, 17, 18, 20, 21, 22, 23, 24]),
+        (4, [12, 16, 11, 6, 20, 15, 10, 5, 0]),
+        (6, [12, 8, 7, 6, 4, 3, 2, 1, 0]),
+    ],
+)
+def test_fields_are_told_layer_by_layer_in_one_order(heading, numbers):
+    table = np.zeros((5, 5), dtype=np.int32)
+    seen, news = np.zeros(table.shape, dtype=np.bool_), np.empty((2, 9), dtype=np.int64)
+    assert sense(table, table, seen, 2, 2, heading, 2, False, news, 0, np.array([0])) == 9
+    assert news[0].tolist() == numbers

@@ -45,6 +45,8 @@ def test_what_changed_is_the_twins_and_comes_back(drawn):
     whole = whole_ends(slots, heads, tails, ends)
     assert whole.tolist() == packed(polygons)[0].tolist()
     assert unpacked(whole, restored(slots, heads, tails, vertices, whole)) == polygons
+    moved = restored(slots, heads, tails, vertices + 9, whole)  # nothing is left from before
+    assert (moved - 9).tolist() == [list(vertex) for polygon in polygons for vertex in polygon]
 
 
 @given(
