@@ -16,14 +16,19 @@ from gapath.events import Event, RunFinished, RunStarted
 from gapath.grid import Field, GridMap
 from gapath.planning.acceleration import AUTO, with_kernels
 from gapath.problem import CornerCutting, Plan, Problem
-from gapath.running.config import Root, first_of, read_problem, settings_of, split
+from gapath.running.config import Root, read_problem, settings_of, split
 from gapath.running.naming import Method, changes_of, map_name, usual_values
+from gapath.running.posing import first_of
+from gapath.running.shards import span
 from gapath.store.settings import flatten, nested
 from gapath.task import Batch, Posing, Task, find_task
 
 _HOW = {"recorder": {}, "output": "-", "force": False, "threads": 1, "kernels": AUTO}
 _HOW |= {"provenance": False}
 """What a log does not say, since it changes nothing in it."""
+
+_WHOLE = {"shard": 0, "shards": 1}
+"""What a log says only of a shard."""
 
 
 class Again(NamedTuple):
@@ -39,12 +44,15 @@ class Again(NamedTuple):
         What its trials are held against.
     remarks : list of str
         What of the log's words nobody can prove.
+    first : int
+        The first trial.
     """
 
     started: RunStarted
     task: Task
     optimum: Plan
     remarks: list[str]
+    first: int
 
 
 def made_again(logged: RunStarted, kernels: str = AUTO) -> Again:
@@ -71,10 +79,11 @@ def made_again(logged: RunStarted, kernels: str = AUTO) -> Again:
         given = nested(logged.settings)
         recorder = given.pop("recorder", None)  # what logs of version 5 and before said of that
         find_task(given.get("task"))
-        root, chosen = split(given | _HOW)
+        root, chosen = split(_WHOLE | given | _HOW)
         settings = settings_of(root, chosen)
         task = with_kernels(find_task(root.task).make(settings), kernels)
         require(1 <= root.trials <= 10**6, "trials", root.trials, "an integer from 1 to 10^6")
+        part = span(root.trials, root.shard, root.shards, isinstance(task, Posing))
         problem, remarks = _problem(root, settings, task, logged.problem)
         task.check(problem)
     except InputError as error:
@@ -82,6 +91,7 @@ def made_again(logged: RunStarted, kernels: str = AUTO) -> Again:
         raise InputError(where, error.value, error.expected) from error
     method, remark = _method(task, settings, logged.method)
     optimum = task.optimum(problem)
+    trials = root.trials * (1 if problem.queries is None else len(problem.queries))
     if recorder is None:
         del settings["recorder"]
     else:
@@ -93,13 +103,13 @@ def made_again(logged: RunStarted, kernels: str = AUTO) -> Again:
         root.task,
         problem,
         root.seed,
-        root.trials * (1 if problem.queries is None else len(problem.queries)),
+        part.stop if root.shards > 1 else trials,
         flatten(settings),
         logged.versions,
         optimum.path,
         optimum.cost,
     )
-    return Again(started, task, optimum, [*remarks, *remark])
+    return Again(started, task, optimum, [*remarks, *remark], part.start)
 
 
 def _problem(
@@ -209,9 +219,10 @@ def events_again(again: Again, left_out: tuple[int, ...] = ()) -> Iterator[Event
     """
     run = again.started
     yield run
-    batch = Batch(run.experiment, run.method, run.problem, run.seed, run.trials)
+    named = (run.experiment, run.method, run.problem)
+    batch = Batch(*named, run.seed, run.trials, first=again.first)
     step = found = 0
-    for number, trial in enumerate(again.task.trials(batch, again.optimum)):
+    for number, trial in enumerate(again.task.trials(batch, again.optimum), again.first):
         if number not in left_out:
             yield from trial.events(step)
         step += trial.steps

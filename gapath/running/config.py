@@ -6,7 +6,6 @@ from dataclasses import asdict, dataclass, field
 from importlib.resources import files
 from typing import Any
 
-import numpy as np
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import InterpolationResolutionError
 
@@ -18,7 +17,8 @@ from gapath.grid import GridMap
 from gapath.planning.acceleration import with_kernels
 from gapath.problem import CornerCutting, Problem
 from gapath.running.naming import Method, map_name, method_of
-from gapath.scenario.listed import Queries
+from gapath.running.posing import first_of
+from gapath.running.shards import span, without_whole
 from gapath.store.inputs import Inputs, watched
 from gapath.store.settings import flatten
 from gapath.task import Listing, Posing, Task, check_events, columns, find_task
@@ -39,6 +39,8 @@ class Root:
     seed, trials : int
         Trials 0 to trials - 1 use the random streams (seed, trial); so many of each problem where
         the task poses several.
+    shard, shards : int
+        Which part of the trials, of how many (`gapath.running.shards`).
     corner_cutting : str
         Name of a `CornerCutting` rule, in lower case.
     output : str
@@ -57,6 +59,8 @@ class Root:
     recorder: dict[str, Any]
     seed: int
     trials: int
+    shard: int
+    shards: int
     corner_cutting: str
     output: str
     force: bool
@@ -89,7 +93,7 @@ class Run:
     recorders : sequence of Recorder
         The recorders.
     seed, trials : int
-        Trials 0 to trials - 1 use the random streams (seed, trial).
+        Trials `first` to trials - 1 use the random streams (seed, trial).
     settings : mapping
         The resolved configuration, flat, without `HOW`.
     output : str
@@ -100,6 +104,8 @@ class Run:
         Threads that do the trials; they change no result.
     map_inputs, method_inputs : mapping
         The files that the map and the method were made from: path -> SHA-256.
+    first : int
+        The first trial: 0 but of a shard.
     """
 
     experiment: str
@@ -116,6 +122,12 @@ class Run:
     map_inputs: Inputs = field(default_factory=dict, repr=False)
     method_inputs: Inputs = field(default_factory=dict, repr=False)
     provenance: bool = False
+    first: int = 0
+
+    @property
+    def count(self) -> int:
+        """How many trials it does."""
+        return self.trials - self.first
 
     @property
     def inputs(self) -> Inputs:
@@ -179,6 +191,7 @@ def make_run(
         problem = read_problem(root, made, maps)
     trials = root.trials * (1 if problem.queries is None else len(problem.queries))
     require(trials <= 10**6, "trials", root.trials, f"fewer: {trials} in all, at most 10^6")
+    part = span(root.trials, root.shard, root.shards, isinstance(made, Posing))
     with watched() as checked_with:
         made.check(problem)
     columns(task.row)  # a package's wrong metric, or event, is refused before anything is written
@@ -192,7 +205,7 @@ def make_run(
         made,
         [recorder for recorder in recorders if recorder.records],
         root.seed,
-        trials,
+        part.stop if root.shards > 1 else trials,
         flatten(settings),
         root.output,
         root.force,
@@ -200,6 +213,7 @@ def make_run(
         map_inputs,
         method_inputs | checked_with,
         root.provenance,
+        part.start,
     )
 
 
@@ -283,7 +297,7 @@ def settings_of(root: Root, chosen: Mapping[str, Any]) -> dict[str, Any]:
     """
     task = find_task(root.task)
     common = {key: value for key, value in asdict(root).items() if key not in HOW}
-    return common | {
+    return without_whole(common) | {
         group: checked(task.shapes[group], chosen[group], group)
         if group in task.shapes
         else normalised(group, chosen[group], group)
@@ -326,25 +340,3 @@ def read_problem(settings: Root, task: Task | None, maps: Mapping[str, GridMap])
         require(getattr(grid, name) is not None, f"map.{name}", "null", "a field [x, y]")
     assert grid.start is not None and grid.target is not None
     return Problem(grid, grid.start, grid.target, rule, maps, grid.published_length)
-
-
-def first_of(
-    queries: Queries, grid: GridMap, rule: CornerCutting, maps: Mapping[str, GridMap]
-) -> Problem:
-    """Pose the first query that can be solved, or else the first whose ends are free.
-
-    Raises InputError if one of them lies outside the map.
-    """
-    ends = np.hstack([queries.starts, queries.targets])
-    outside = (ends < 0) | (ends >= 2 * (grid.cols, grid.rows))
-    for index in np.flatnonzero(outside.any(axis=1))[:1]:
-        where = f"map {grid.name}, problem {queries.numbers[index]}"
-        limits = f"fields [x, y] with 0 <= x < {grid.cols}, 0 <= y < {grid.rows}"
-        raise InputError(where, f"{ends[index, :2].tolist()} to {ends[index, 2:].tolist()}", limits)
-    parts = grid.parts(int(rule))
-    start, target = (parts[at[:, 1], at[:, 0]] for at in (queries.starts, queries.targets))
-    free = (start > 0) & (target > 0)
-    joined = free & (start == target)
-    first = int(np.argmax(joined if joined.any() else free))
-    (x, y, u, v), length = ends[first].tolist(), float(queries.lengths[first])
-    return Problem(grid, (x, y), (u, v), rule, maps, length, queries)

@@ -228,7 +228,8 @@ def _do_trials(
         taken, trials = _trials(run, optimum, started, kept)
         count = taken.count
         if count:
-            shown.tell(f"{what}: goes on after trial {count - 1}, {count} of {run.trials} are done")
+            last = run.first + count - 1
+            shown.tell(f"{what}: goes on after trial {last}, {count} of {run.count} are done")
         with closing(Journal(work, run)) as journal:
             for recorder in run.recorders:
                 recorder.open(str(work.path))
@@ -242,7 +243,7 @@ def _do_trials(
             bar = tqdm(
                 trials,
                 desc=what,
-                total=run.trials,
+                total=run.count,
                 initial=max(count - 1, 0),
                 unit="trial",
                 leave=False,
@@ -274,9 +275,10 @@ def _trials(
 
     If that one comes to something else now, nothing is taken up, and all trials are left.
     """
-    batch = Batch(run.experiment, run.method.name, run.problem, run.seed, run.trials, run.threads)
+    named = (run.experiment, run.method.name, run.problem)
+    batch = Batch(*named, run.seed, run.trials, run.threads, run.first)
     if kept.earlier.count:
-        first = kept.earlier.count - 1
+        first = run.first + kept.earlier.count - 1
         trials = run.task.trials(batch._replace(first=first), optimum)
         trial = next(trials)
         if kept.earlier.agrees(run, trial, started):
@@ -309,7 +311,7 @@ def _manifest(run: Run, folder: RunFolder, command: str) -> Manifest:
         preset=run.method.preset,
         changes=dict(run.method.changes),
         seed=run.seed,
-        trials=run.trials,
+        trials=run.count,
         command=command,
         map_inputs=dict(run.map_inputs),
         method_inputs=dict(run.method_inputs),

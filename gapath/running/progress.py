@@ -236,7 +236,7 @@ def _logged(folder: RunFolder, run: Run) -> Iterator[list[Event]]:
                 return
             trial.append(event)
             if isinstance(event, Finished):
-                if event.trial != count:
+                if event.trial != run.first + count:
                     return
                 yield trial
                 count, trial = count + 1, []

@@ -195,6 +195,11 @@ class Standing:
         parts += [f"{busy} done by another process"] if busy else []
         return ", ".join(parts)
 
+    def unfinished(self) -> str:
+        """Say of a sweep that has runs left that it is not finished, and how it goes on."""
+        how = "it is under way" if self.alive else f"`{self.command}` goes on"
+        return f"a sweep that is not finished: {self.counts()}, {self.left} runs are left; {how}"
+
 
 def unfinished(outputs: Path) -> list[Standing]:
     """Read the sweeps below a folder of outputs that have runs left to do."""

@@ -15,7 +15,7 @@ from gapath.store.settings import Flat, text_of
 VERSIONED = ("gapath", "numpy", "numba", "mcap", "zstandard", "rosbags", "rerun-sdk", "hydra-core",
              "pyarrow")  # fmt: skip
 
-_NO_SETTING = ("trials", "recorder", "map")
+_NO_SETTING = ("trials", "shard", "shards", "recorder", "map")
 """What makes no other setting: it changes no trial, or is told by what it comes to, the map."""
 
 

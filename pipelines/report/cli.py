@@ -18,6 +18,7 @@ commands:
                                    gapath-report runs --help
   gapath-report compare [OUTPUTS]  say which of two or more groups of runs is best, and from
                                    which others it can be told apart: compare --help
+  gapath-report watch [OUTPUTS]    follow sweeps that are under way: watch --help
   gapath-report tag KEY TEXT...    give a run tags; note KEY TEXT: a note
   gapath-report prune [OUTPUTS]    list runs that can go, and remove them: prune --help
   gapath-report archive EXPERIMENT FILE
@@ -54,6 +55,10 @@ def main(argv: Sequence[str] | None = None) -> int:
 
             with _no_collection():
                 comparing.run(arguments[1:])
+        elif arguments[:1] == ["watch"]:
+            from gapath.pipelines.report import watch
+
+            watch.main(arguments[1:])
         elif arguments[:1] and arguments[0] in ("tag", "note", "prune", "archive"):
             from gapath.pipelines.keeping import command as keeping
 

@@ -16,10 +16,12 @@ from gapath.errors import InputError, require
 from gapath.pipelines.page.page import Part, files_of, render
 from gapath.pipelines.page.section import ALL, find_sections
 from gapath.pipelines.reading.collect import Skipped, read_trials
+from gapath.pipelines.reading.counted import incomplete
 from gapath.pipelines.reading.tags import said_of
 from gapath.pipelines.report.bench import make_bench_page
 from gapath.pipelines.report.command import as_sweeps
 from gapath.pipelines.report.run_pages import Addresses, write_run_pages
+from gapath.running.sweep import unfinished
 from gapath.store.durable import write_whole
 from gapath.store.provenance.machine import processor
 from gapath.store.records import RunRecord, find_runs
@@ -94,6 +96,9 @@ def _runs_page(
     first = f"; {unusable[0].run}: {unusable[0].reason}" if unusable else ""
     require(count > 0, outputs, f"{len(runs)} runs of which none can be used"
             f"{first}", "a finished run")  # fmt: skip
+    skipped += [Skipped(str(each.path.relative_to(outputs)), each.unfinished())
+                for each in unfinished(outputs)]  # fmt: skip
+    skipped += [Skipped(*each) for each in incomplete(used)]
     skipped = skipped + unusable + [Skipped(each.where, str(each)) for each in said_of(runs)[1]]
     frames = list(trials.values())
     parts = []
