@@ -26,6 +26,7 @@ from gapath.pipelines.asking import command as asking
 from gapath.pipelines.compare import command as comparing
 from gapath.pipelines.keeping import command as keeping
 from gapath.pipelines.report import cli as report_cli
+from gapath.pipelines.report import watch
 from gapath.planning.path import octile_length
 from gapath.running import config
 from gapath.task import find_task
@@ -212,6 +213,8 @@ def check_report(words):
         check_parser(comparing.parser(), words[1:])
     elif words[0] in ("tag", "note", "prune", "archive"):
         check_parser(keeping.parser(words[0]), words[1:])
+    elif words[:1] == ["watch"]:
+        check_parser(watch.parser(), words[1:])
     else:
         check_parser(report_cli._report_parser(), words)
 

@@ -239,13 +239,14 @@ def describe(run: Run, execution: Execution, short: bool) -> str:
     instance = f"#{grid.instance}" if grid.instance else ""
     what = printable(f"{grid.name}{instance} {run.method.name}")
     folder = printable(execution.folder)
-    if execution.state is RunState.SKIPPED:
-        return f"{what}: skipped, {folder} is whole (force=true runs it again)"
+    skipped = f"{what}: skipped, {folder} is whole (force=true runs it again)"
     if execution.state is RunState.BUSY:
         return f"{what}: busy, another process is working on {folder}"
     rows = execution.rows
     if short:
-        return f"{what}: {printable(run.task.line(rows))}, {folder}"
+        again = execution.state is RunState.SKIPPED
+        begin, end = (skipped, "") if again else (what, f", {folder}")
+        return f"{begin}: {printable(run.task.line(rows))}{end}"
     marked = f" ({grid.source})" if grid.source == "reconstructed" else ""
     lines: dict[str, object] = {
         "map": f"{grid.name}{instance}{marked}, {grid.cols} x {grid.rows} fields"
@@ -260,6 +261,8 @@ def describe(run: Run, execution: Execution, short: bool) -> str:
     lines[run.task.groups[0]] = run.method.name
     lines |= run.task.summary(rows)
     table = "\n".join(f"{name:<14}{printable(value)}" for name, value in lines.items())
+    if execution.state is RunState.SKIPPED:
+        return f"{table}\n\n{skipped}"
     files = "\n".join(f"  {printable(execution.folder / name)}" for name in execution.files)
     return f"{table}\n\nfiles\n{files}"
 

@@ -57,19 +57,24 @@ def watched(command: str, kept: str = "") -> Iterator[None]:
 def following(over: Callable[[], bool]) -> Iterator[None]:
     """Work for another process: what that one is told by a signal ends this one, too, silently.
 
+    Between two pieces of work this process ends with the one that started it, as it may wait for
+    a lock that nobody gives back.
+
     Parameters
     ----------
     over : callable
         Tells whether the other process is gone, however it ended.
     """
-    if threading.current_thread() is threading.main_thread() and not _followed:
+    parent = os.getppid()
+    new = not _followed
+    _followed[:] = [over]
+    if new and threading.current_thread() is threading.main_thread():
         _worker.enter_context(watched(""))
         threading.Thread(target=_follow, daemon=True).start()
-    _followed[:] = [over]
     try:
         yield
     finally:
-        _followed[:] = [lambda: False]
+        _followed[:] = [lambda: os.getppid() != parent]
 
 
 _followed: list[Callable[[], bool]] = []
@@ -80,7 +85,7 @@ _LOOK = 0.3  # seconds between looks at the other process
 
 
 def _follow() -> None:
-    while not _followed or not _followed[0]():
+    while not _followed[0]():
         time.sleep(_LOOK)
     _end("", int(signal.SIGTERM))
 

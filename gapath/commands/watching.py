@@ -64,7 +64,7 @@ class Shown:
         for line in self._standing.read():
             out, err = line.get("said") or ("", "")
             for text in err.splitlines():
-                self._warn(text)
+                self._warn(text.removeprefix("gapath: "))
             if out and (code := self._say(out.rstrip("\n"))):
                 self.codes.append(code)
         self._bar.n = self._standing.ended

@@ -28,13 +28,7 @@ def main(argv: Sequence[str]) -> None:
     InputError
         If there are neither sweeps nor runs.
     """
-    parser = argparse.ArgumentParser(
-        "gapath-report watch", description="Follow sweeps that are under way, until none is."
-    )
-    parser.add_argument("outputs", type=Path, nargs="?", default=Path("outputs"),
-                        help="folder with <experiment>/<key>/ [outputs]")  # fmt: skip
-    parser.add_argument("--once", action="store_true", help="say where they stand, and end")
-    chosen = parser.parse_args(argv)
+    chosen = parser().parse_args(argv)
     bar = sys.stdout.isatty() and not chosen.once
     sweeps: dict[Path, Standing] = {}
     said: list[str] = []
@@ -57,6 +51,17 @@ def main(argv: Sequence[str]) -> None:
     states = Counter(str(run.state) for run in find_runs(chosen.outputs))
     runs = ", ".join(f"{count} {state}" for state, count in sorted(states.items()))
     print(printable(f"runs in {chosen.outputs}: {runs}"))
+
+
+def parser() -> argparse.ArgumentParser:
+    """Make the parser of its arguments."""
+    made = argparse.ArgumentParser(
+        "gapath-report watch", description="Follow sweeps that are under way, until none is."
+    )
+    made.add_argument("outputs", type=Path, nargs="?", default=Path("outputs"),
+                      help="folder with <experiment>/<key>/ [outputs]")  # fmt: skip
+    made.add_argument("--once", action="store_true", help="say where they stand, and end")
+    return made
 
 
 def _look(outputs: Path, sweeps: dict[Path, Standing]) -> None:

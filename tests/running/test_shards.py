@@ -44,7 +44,7 @@ def rows(runs, task):
 def test_shards_come_to_the_rows_of_the_whole_and_count_once(gapath, tmp_path, setting, task):
     out = tmp_path / "out"
     assert gapath(*setting, "trials=7", "recorder=none", output=tmp_path / "whole")[0] == 0
-    code, text, _ = gapath("-m", *setting, "trials=7", "recorder=mcap", "shards=3", "shard=0,2")
+    code, _, _ = gapath("-m", *setting, "trials=7", "recorder=mcap", "shards=3", "shard=0,2")
     assert code == 0
     runs = find_runs(out)
     assert sorted(run.known.trials for run in runs) == [2, 3]
