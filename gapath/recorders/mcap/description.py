@@ -82,12 +82,13 @@ class Lost:
 
     @classmethod
     def of(cls, text: Mapping[str, str]) -> Self:
-        """Read such a record's entries; raises whatever Python raises where they are others."""
-        pairs = (pair.partition("-")[::2] for pair in text["messages"].split())
-        messages = tuple((int(first), int(last)) for first, last in pairs)
+        """Read such a record's entries; raises InputError where they are others."""
+        messages = _told(text, "messages", _ranges)
         ends = [number for pair in messages for number in pair]
         require(ends == sorted(ends) and len(ends) <= _MOST_LOST, LOST, ends[:9], "rising numbers")
-        return cls(messages, frozenset(map(int, text["trials"].split())))
+        return cls(
+            messages, _told(text, "trials", lambda trials: frozenset(map(int, trials.split())))
+        )
 
 
 NOTHING = Lost()
@@ -278,6 +279,11 @@ def _grid_map(name: str, told: Callable[..., Any], arrays: _Arrays) -> GridMap:
         resolution=told(f"{name}_resolution", float),
         origin=told(f"{name}_origin", _pose),
     )
+
+
+def _ranges(text: str) -> tuple[tuple[int, int], ...]:
+    pairs = (pair.partition("-")[::2] for pair in text.split())
+    return tuple((int(first), int(last)) for first, last in pairs)
 
 
 def _names(text: str) -> list[str]:

@@ -47,6 +47,8 @@ def _of_entry(entry):
                 yield name, (name,), [replace(entry, **{name: getattr(entry, name) + "x"})]
         case Metadata():
             named = ("metadata", "gapath_log_version: got None")
+            if entry.name == description.LOST:  # what is lost shows where it is
+                named += ("message",)
             yield "removed", named, []
             yield "doubled", named, [entry, entry]
             yield "renamed", named, [replace(entry, name="other")]
