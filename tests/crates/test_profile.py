@@ -1,6 +1,6 @@
 """What RO-Crate 1.1 and the profile of Process Run Crates ask for.
 
-`tests/reliability/test_validated_crates.py` asks the profile's own validator.
+`tests/reliability/crates/test_validated_crates.py` asks the profile's own validator.
 """
 
 import hashlib

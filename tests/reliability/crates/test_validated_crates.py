@@ -49,7 +49,7 @@ def tools(tmp_path_factory):
 
 
 def answer(tools, crate):
-    script = Path(__file__).parents[1] / "crates" / "outside.py"
+    script = Path(__file__).parents[2] / "crates" / "outside.py"
     done = subprocess.run([tools, script, crate], capture_output=True, text=True, check=True)
     return json.loads(done.stdout.splitlines()[-1])
 
