@@ -154,7 +154,7 @@ def one_of(given: object, names: Iterable[str]) -> str:
     return f"one of {listed}{did_you_mean(given, {name: name for name in names})}"
 
 
-_FEW = 18
+_FEW = 24
 
 
 def did_you_mean(given: object, names: Mapping[str, str]) -> str:

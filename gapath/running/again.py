@@ -19,16 +19,13 @@ from gapath.problem import CornerCutting, Plan, Problem
 from gapath.running.config import Root, read_problem, settings_of, split
 from gapath.running.naming import Method, changes_of, map_name, usual_values
 from gapath.running.posing import first_of
-from gapath.running.shards import span
+from gapath.running.shards import WHOLE, span
 from gapath.store.settings import flatten, nested
 from gapath.task import Batch, Posing, Task, find_task
 
 _HOW = {"recorder": {}, "output": "-", "force": False, "threads": 1, "kernels": AUTO}
 _HOW |= {"provenance": False}
 """What a log does not say, since it changes nothing in it."""
-
-_WHOLE = {"shard": 0, "shards": 1}
-"""What a log says only of a shard."""
 
 
 class Again(NamedTuple):
@@ -79,7 +76,7 @@ def made_again(logged: RunStarted, kernels: str = AUTO) -> Again:
         given = nested(logged.settings)
         recorder = given.pop("recorder", None)  # what logs of version 5 and before said of that
         find_task(given.get("task"))
-        root, chosen = split(_WHOLE | given | _HOW)
+        root, chosen = split(WHOLE | given | _HOW)
         settings = settings_of(root, chosen)
         task = with_kernels(find_task(root.task).make(settings), kernels)
         require(1 <= root.trials <= 10**6, "trials", root.trials, "an integer from 1 to 10^6")

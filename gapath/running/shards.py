@@ -37,8 +37,8 @@ def span(trials: int, shard: int, shards: int, posing: bool) -> range:
 def without_whole(settings: Mapping[str, Any]) -> dict[str, Any]:
     """Leave out of settings that a run is not cut: it is what it was before that could be."""
     cut = settings["shards"] != 1
-    return {key: value for key, value in settings.items() if cut or key not in NAMES}
+    return {key: value for key, value in settings.items() if cut or key not in WHOLE}
 
 
-NAMES = ("shard", "shards")
-"""Settings that say which trials a run does, none of which they change."""
+WHOLE = {"shard": 0, "shards": 1}
+"""Settings of a run that is not cut, which those of runs do not have."""

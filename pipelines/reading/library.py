@@ -34,6 +34,7 @@ from gapath.problem import Plan, Problem, no_path
 from gapath.recorders.mcap import FILE
 from gapath.running.config import HOW, read_problem, split
 from gapath.running.naming import usual_values
+from gapath.running.shards import WHOLE
 from gapath.store.records import RunRecord, find_run, find_runs, is_run, read_record
 from gapath.store.settings import Value, nested, tabular
 from gapath.store.status import Status
@@ -184,7 +185,7 @@ class Run(Shown):
             return run_start(self.log).problem
         usual, known = usual_values(), self.record.known
         how = {name: usual[name] for name in HOW}
-        root, chosen = split(nested(self.record.settings) | how)
+        root, chosen = split(WHOLE | nested(self.record.settings) | how)
         task = find_task(root.task)
         made = task.make(chosen) if issubclass(task, Posing) else None
         problem = read_problem(root, made, {})

@@ -8,7 +8,7 @@ import pytest
 
 MAPS = r"one of \d+ names, see gapath --help"
 ROOT = "choice, corner_cutting, drive, experiment, force, kernels, map, name, navigator, output, "
-ROOT += "planner, provenance, recorder, scenario, seed, task, threads, trials"
+ROOT += "planner, provenance, recorder, scenario, seed, shard, shards, task, threads, trials"
 
 CASES = {
     # A name that there is not.

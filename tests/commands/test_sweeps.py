@@ -109,7 +109,7 @@ def test_of_a_sweep_only_what_is_left_is_done(gapath, tmp_path, engine):
     assert code == cli.BAD_INPUT
     assert text.startswith(f"skipped: 2 of 4 runs are whole, in {out}/plan (force=true")
     assert text.count("of 3 found") == 1
-    assert errors.startswith("gapath: output: got ")
+    assert errors.startswith(f"gapath: {third}/run.lock: got ")
     assert errors.count("\n") == 1
     assert {path: (path / "status.json").read_bytes() for path in first} == first
     (left,) = unfinished(out)

@@ -13,6 +13,7 @@ import pyarrow.parquet as pq
 
 from gapath import __main__
 from gapath.running.experiment import Execution, run_folder
+from gapath.running.sweep import BUSY
 from gapath.store.records import Manifest
 from gapath.store.runfolder import BEFORE, PROGRESS, WORK
 from gapath.store.status import STATUS, RunState
@@ -78,11 +79,11 @@ def runs_of(gapath, monkeypatch, words):
 
     def take(run, *given, **more):
         runs.append(run)
-        return Execution(run_folder(run).path, RunState.SKIPPED, [])
+        return Execution(run_folder(run).path, RunState.BUSY, [])
 
     with monkeypatch.context() as patch:
         patch.setattr("gapath.commands.run.execute", take)
-        assert gapath(*words)[0] == 0
+        assert gapath(*words)[0] == BUSY
     return runs
 
 

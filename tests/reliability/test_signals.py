@@ -69,9 +69,9 @@ def test_a_run_ends(moment, gapath, tmp_path):
     wait(process, lambda: states(out))
     time.sleep(0.3)
     seconds = ended(process, number)
-    assert (process.returncode, errors.read_text()) == (
-        128 + number, f"gapath: {WORDS[number]}{KEPT}\n"
-    )  # fmt: skip
+    *warned, last = errors.read_text().splitlines()
+    assert (process.returncode, last) == (128 + number, f"gapath: {WORDS[number]}{KEPT}")
+    assert all("; Control-C ends it" in line for line in warned)
     assert seconds < SECONDS
     assert states(out) == ["interrupted"]
     (run,) = find_runs(out)
