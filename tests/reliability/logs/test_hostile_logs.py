@@ -56,8 +56,8 @@ def test_settings_are_plain_data(name, value, plan, tmp_path, capsys, monkeypatc
     parts, path = taken_apart(plan), tmp_path / "run.mcap"
 
     def other(line):
-        if line.partition(":")[0] == "trials" and value == "1000000":
-            return "trials: 1000\n"
+        if line.partition(":")[0] == "planner.population" and value == "1000000":
+            return "planner.population: 10000\n"
         if not line.startswith(f"{name}: "):
             return line
         return "" if value is None else f"{name}: {value}\n"
