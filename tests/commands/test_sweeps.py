@@ -130,7 +130,7 @@ def test_of_a_sweep_only_what_is_left_is_done(gapath, tmp_path, engine):
 @pytest.mark.parametrize(
     ("engine", "right"),
     [
-        ("jobilb", "jobilb, expected one of basic, joblib, ray, submitit_local, submitit_slurm"),
+        ("jobilb", "jobilb, expected one of basic, joblib, ray"),
         ("joblib", "joblib, which is not installed, expected pip install 'gapath[joblib]', or"),
         ("submitit_slurm", "submitit_slurm, which is not installed, expected pip install"),
         ("ray", "which is not installed, expected pip install 'gapath[ray]', or another"),
