@@ -245,6 +245,6 @@ def test_a_log_that_cannot_be_read_is_named(outputs, monkeypatch):
     def broken(path):
         raise InputError(path, "damaged", "a whole log")
 
-    monkeypatch.setattr(logs, "read_events", broken)
+    monkeypatch.setattr(logs, "read_sound", broken)
     section = figure_s04_paths.section(collect(outputs).trials["plan"], find_runs(outputs))
     assert len(section.skipped) == 2 and not section.figures

@@ -2,6 +2,7 @@
 
 import tempfile
 import time
+from string import ascii_letters
 
 import numpy as np
 import pytest
@@ -127,6 +128,7 @@ def answers(draw):
     return Answer(status, draw(paths()), weights, numbers[0], vln, *numbers[1:])
 
 
+VERSIONS = st.text(ascii_letters + "019.+!-", min_size=1, max_size=99)
 NAMES = st.from_regex(r"[a-z_]+(\.[a-z_]+|\[\d\])*", fullmatch=True)
 VALUES = st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text()
 
@@ -165,7 +167,7 @@ def runs(draw):
             draw(counts),
             draw(counts),
             draw(st.dictionaries(NAMES, VALUES, max_size=3)),
-            draw(st.dictionaries(st.text(), st.text(), max_size=3)),
+            draw(st.dictionaries(st.text(), VERSIONS, max_size=3)),
             draw(paths()),
             draw(st.floats()),
         )
