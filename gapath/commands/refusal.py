@@ -24,11 +24,13 @@ from omegaconf.errors import OmegaConfBaseException
 from gapath.discovery import OFFERS, kinds, with_setting, yaml_names
 from gapath.errors import InputError, did_you_mean, one_of, require
 from gapath.running.config import conf_folder
-from gapath.store.settings import plain_yaml
+from gapath.store.settings import LONGEST_WHOLE, plain_yaml
 from gapath.task import find_task
 
 BAD_CONFIGURATION = (InputError, HydraException, OmegaConfBaseException)
 """What is raised where a command line or a configuration is wrong."""
+
+_LONG = re.compile(rf"\d{{{LONGEST_WHOLE + 1},}}")
 
 
 def arguments() -> argparse.Namespace:
@@ -155,6 +157,10 @@ def _found(error: BaseException, words: Sequence[str], sweep: bool) -> InputErro
     with _hydra():
         if isinstance(error, OverrideParseException):
             return _unreadable(error.override)
+        for word in words:  # Python refuses to read it, and does not say where it stands
+            key, _, value = word.partition("=")
+            if size := max(map(len, _LONG.findall(value)), default=0):
+                return InputError(key, f"a number of {size} digits", f"at most {LONGEST_WHOLE}")
         parsed = OverridesParser.create().parse_overrides(list(words))
         groups = set(GlobalHydra.instance().config_loader().list_groups(""))
         chosen = [

@@ -31,6 +31,9 @@ MAX_TEXT = 1 << 20
 MOST_NODES, DEEPEST = 10_000, 32
 """Values of a YAML, each as often as it stands for, and mappings and lists within one another."""
 
+LONGEST_WHOLE = 400
+"""Characters of a whole number; Python refuses to show one of 4300 digits."""
+
 _STEP = re.compile(r"\[(\d*)\]|\.?([^.\[\]]+)|\.$")
 
 
@@ -256,14 +259,14 @@ def plain_yaml(given: str | Path, where: str, expected: str) -> Any:
     InputError
         If it cannot be read or is no YAML, or longer than `MAX_YAML_BYTES`, of more than
         `MOST_NODES` values, all aliases followed, nested more deeply than `DEEPEST`, or has tags
-        that make other things.
+        that make other things, or a whole number of more than `LONGEST_WHOLE` characters.
     """
     try:
         text = given if isinstance(given, str) else _text_of_file(given, where, expected)
         size = len(text)
         require(size <= MAX_YAML_BYTES, where, f"{size} characters", f"at most {MAX_YAML_BYTES}")
         _check_bounds(text, where)
-        return yaml.safe_load(text)
+        return yaml.load(text, _Plain)  # noqa: S506 - a SafeLoader
     except InputError:
         raise
     except OSError as error:
@@ -271,6 +274,20 @@ def plain_yaml(given: str | Path, where: str, expected: str) -> Any:
     except (yaml.YAMLError, ValueError, OverflowError, TypeError, AttributeError) as error:
         reason = " ".join(str(error).split("\n")[0].split())
         raise InputError(where, f"text that is no YAML ({reason})", expected) from error
+
+
+class _Plain(yaml.SafeLoader):
+    """Makes plain data, and only whole numbers that can be shown again, in messages."""
+
+    def construct_yaml_int(self, node: yaml.ScalarNode) -> int:
+        """Make a whole number."""
+        size = len(node.value)
+        if size > LONGEST_WHOLE:
+            raise yaml.YAMLError(f"a whole number of {size} characters")
+        return super().construct_yaml_int(node)
+
+
+_Plain.add_constructor("tag:yaml.org,2002:int", _Plain.construct_yaml_int)
 
 
 def _text_of_file(path: Path, where: str, expected: str) -> str:

@@ -72,6 +72,8 @@ CASES = {
     "task=drive drive.known_map=none.map": r"drive\.known_map, none\.map: got no such file, .*",
     "map=image map.path=a.png map.start={a:1}": r"map\.start: got \{'a': 1\}, expected a value of "
     r"type list\[int\] \| None",
+    f"seed={5000 * '9'}": "seed: got a number of 5000 digits, expected at most 400",
+    f"-m seed=1,{5000 * '9'}": "seed: got a number of 5000 digits, expected at most 400",
     "seed=-1": r"seed: got -1, expected an integer in \[0, 2\^64\)",
     "trials=0": r"trials: got 0, expected an integer from 1 to 10\^6",
     "threads=257": "threads: got 257, expected an integer from 1 to 256",

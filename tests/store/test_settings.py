@@ -8,7 +8,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gapath.errors import InputError
-from gapath.store.settings import flatten, nested, of_text, read_settings, tabular, text_of
+from gapath.store.settings import (
+    flatten,
+    nested,
+    of_text,
+    plain_yaml,
+    read_settings,
+    tabular,
+    text_of,
+)
 
 names = st.from_regex(r"[a-z_]{1,6}", fullmatch=True)
 values = (
@@ -104,3 +112,13 @@ def test_a_configuration_that_is_none_is_refused(content, tmp_path):
     path.write_text(content)
     with pytest.raises(InputError):
         read_settings(path)
+
+
+@pytest.mark.parametrize(
+    "number", ["0x" + "9" * 399, "9" * 5000, "1:" * 200 + "1", "-0b" + "1" * 398]
+)
+def test_whole_numbers_that_nobody_could_show_are_refused(number):
+    with pytest.raises(InputError, match=r"^a\.yaml: got .* \(a whole number of \d+ characters\)"):
+        plain_yaml(f"a: [&b {number}, *b]", "a.yaml", "a YAML")
+    shown = plain_yaml(f"a: {number[:399]}", "a.yaml", "a YAML")
+    assert len(str(shown)) < 1000

@@ -26,7 +26,7 @@ from gapath.errors import InputError
 from gapath.grid import GridMap
 from gapath.store.settings import plain_yaml
 
-TRIES = rounds(300, 80_000)
+TRIES = rounds(300, 85_000)
 """Altered files for each reader and ending."""
 
 ROS = """image: a.pgm
@@ -80,7 +80,8 @@ WORDS = [
     *(b"\0", b"\xff\xfe", b"\xef\xbb\xbf", b"\r\n", b"\x1b[2J", b"\xf0\x9f\x99\x82", b" " * 70),
     *(b"&a [*a]", b"*a", b"<<: *a", b"!!python/object/apply:os.getcwd []", b"!!binary x", b"? "),
     *(b"[" * 40, b"{" * 40, b"<a>" * 40, b"- " * 40, b"<!DOCTYPE a>", b"<![CDATA[", b"&lt;", b"#"),
-    *(b'"', b"'", b"{", b"}", b"null", b"../", b"/etc/passwd", b"9" * 5000, b"%s", b"\\u0000"),
+    *(b'"', b"'", b"{", b"}", b"null", b"../", b"/etc/passwd", b"%s", b"\\u0000"),
+    *(b"9" * 5000, b"0x" + b"9" * 5000),
 ]
 
 
