@@ -61,8 +61,7 @@ class Shown:
             self._bar.refresh()  # the time goes on
 
     def _look(self) -> None:
-        for line in self._standing.read():
-            out, err = line.get("said") or ("", "")
+        for out, err in self._standing.read():
             for text in err.splitlines():
                 self._warn(text.removeprefix("gapath: "))
             if out and (code := self._say(out.rstrip("\n"))):

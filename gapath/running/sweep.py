@@ -23,7 +23,10 @@ from gapath.store.runfolder import is_held, is_locked
 
 _PATTERN = "sweep-*.jsonl"
 
-_MOST = 1 << 28  # bytes that are read of one
+_MOST, _MOST_LINES, _LONGEST = 1 << 26, 4 * 10**5, 1 << 23
+"""Bytes and lines that are read of one, and bytes of a line."""
+
+_OTHERS = (AttributeError, RecursionError)
 
 BUSY = 75
 """Exit code of a job that another process is doing."""
@@ -93,6 +96,13 @@ def _line(content: dict[str, object]) -> bytes:
     return json.dumps({"at": time.time(), **content}).encode() + b"\n"
 
 
+def _count(value: object) -> int:
+    """Read a number of jobs or trials, an exit code or a time in seconds."""
+    if not isinstance(value, int | float) or not 0 <= value <= 1 << 53:
+        raise ValueError(value)
+    return int(value)
+
+
 def host() -> str:
     """Name this machine, for who must know whether a process is one of it."""
     return platform.node()
@@ -120,7 +130,8 @@ class Standing:
     jobs: int = 0
     whole: int = 0
     folders: list[str] = field(default_factory=list)
-    began: float = 0.0
+    began: int = 0
+    """Seconds since 1970."""
     running: dict[int, str] = field(default_factory=dict)
     """Jobs under way: number -> words."""
     codes: dict[int, int] = field(default_factory=dict)
@@ -128,37 +139,46 @@ class Standing:
     trials: int = 0
     """Trials of the jobs that ended."""
     _rest: bytes = b""
+    _bytes: int = _MOST
+    _lines: int = _MOST_LINES
 
     def __post_init__(self) -> None:
         self._file = open_regular(self.path)
 
-    def read(self) -> list[dict[str, Any]]:
-        """Read what came since it was read last; gives those lines.
+    def read(self) -> list[tuple[str, str]]:
+        """Read what came since it was read last; gives what jobs said there, and their errors.
 
-        Lines that are none are left out, as the file may be anybody's.
+        The file may be anybody's: lines that are none are left out, and what is beyond `_MOST`
+        bytes, `_MOST_LINES` or a line of `_LONGEST` bytes is not read.
         """
-        found: list[dict[str, Any]] = []
+        said: list[tuple[str, str]] = []
         with suppress(OSError):
-            *lines, self._rest = (self._rest + (self._file.read(_MOST) or b"")).split(b"\n")
-            for line in lines:
-                with suppress(ValueError, TypeError, KeyError, AttributeError, RecursionError):
-                    content = json.loads(line)
-                    self._take(content)
-                    found.append(content)
-        return found
+            while self._lines and (part := self._file.read(min(self._bytes, 1 << 20))):
+                self._bytes -= len(part)
+                *lines, self._rest = (self._rest + part).split(b"\n")
+                for line in lines[: self._lines]:
+                    with suppress(ValueError, TypeError, LookupError, ArithmeticError, *_OTHERS):
+                        self._take(json.loads(line), said)
+                self._lines -= min(len(lines), self._lines)
+                if len(self._rest) > _LONGEST:
+                    self._lines, self._rest = 0, b""
+        return said
 
-    def _take(self, line: dict[str, Any]) -> None:
+    def _take(self, line: dict[str, Any], said: list[tuple[str, str]]) -> None:
         if "command" in line:
-            self.command, self.began = str(line["command"]), float(line["at"])
-            self.jobs, self.whole = int(line["jobs"]), int(line["whole"])
-            self.folders = [str(name) for name in line["folders"]]
+            jobs, whole, began = _count(line["jobs"]), _count(line["whole"]), _count(line["at"])
+            folders = [str(name) for name in line["folders"]]
+            self.command, self.began, self.folders = str(line["command"]), began, folders
+            self.jobs, self.whole = jobs, min(whole, jobs)
         elif "begun" in line:
-            self.running[int(line["begun"])] = " ".join(map(str, line["words"]))
+            self.running[_count(line["begun"])] = " ".join(map(str, line["words"]))
         elif "ended" in line:
-            number = int(line["ended"])
+            number, code, trials = (_count(line[name]) for name in ("ended", "code", "trials"))
             self.running.pop(number, None)
-            self.codes[number] = int(line["code"])
-            self.trials += int(line["trials"])
+            self.codes[number] = code
+            self.trials += trials
+            out, err = line.get("said") or ("", "")
+            said.append((str(out), str(err)))
 
     @property
     def alive(self) -> bool:

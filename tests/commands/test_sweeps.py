@@ -1,6 +1,7 @@
 """Sweeps on every engine: checked first, the same rows, exit codes, whole runs left alone."""
 
 import json
+import tracemalloc
 
 import pyarrow.parquet as pq
 import pytest
@@ -179,9 +180,33 @@ def test_what_others_write_into_the_file_of_a_sweep_harms_nobody(tmp_path):
     file = SweepFile(tmp_path / "plan", head)
     with file.path.open("ab") as more:
         more.write(b'\xff\n[1]\n{"ended": "x"}\n{"ended": 0}\nnull\n' + b"[" * 9999 + b"\n")
+        for number in (b"Infinity", b"NaN", b"-1", b"1e300", b"null", b"9" * 400, b'""', b"[1]"):
+            more.write(b'{"begun": %b, "words": []}\n{"ended": 1, "code": %b, "trials": 3}\n'
+                       b'{"command": "", "jobs": %b, "whole": 0, "folders": [], "at": 0}\n'
+                       b'{"command": "", "jobs": 5, "whole": 0, "folders": [], "at": %b}\n'
+                       % (number, number, number, number))  # fmt: skip
         more.write(json.dumps({"ended": 0, "code": 0, "trials": 3}).encode() + b'\n{"half":')
     standing = Standing(file.path)
     standing.read()
     assert (standing.ended, standing.left, standing.trials, standing.alive) == (1, 1, 3, True)
+    assert standing.unfinished() and not standing.running
     file.close(done=False)
     assert not standing.alive
+
+
+def test_of_a_file_that_is_no_sweeps_no_more_is_read_than_of_one(tmp_path):
+    path = tmp_path / "plan" / "sweep-a-1.jsonl"
+    path.parent.mkdir()
+    path.write_bytes(b"[" + b"[]," * 2**25)
+    tracemalloc.start()
+    try:
+        assert unfinished(tmp_path) == []
+        assert tracemalloc.get_traced_memory()[1] < 2**26
+    finally:
+        tracemalloc.stop()
+    for line in (b"\n", b'{"begun": 1, "words": []}\n'):
+        path.write_bytes(line * 2**21)
+        standing = Standing(path, _lines=1000)
+        standing.read()
+        standing.read()
+        assert standing._file.tell() <= 2**20
