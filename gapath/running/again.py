@@ -4,6 +4,7 @@ What can be made of the settings is made of them, not taken over: maps that are 
 target, names, the optimum. What only a file of somebody's own could tell is taken from the log.
 """
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -16,7 +17,7 @@ from gapath.events import Event, RunFinished, RunStarted
 from gapath.grid import Field, GridMap
 from gapath.planning.acceleration import AUTO, with_kernels
 from gapath.problem import CornerCutting, Plan, Problem
-from gapath.running.config import Root, read_problem, settings_of, split
+from gapath.running.config import Root, check_name, read_problem, settings_of, split
 from gapath.running.naming import Method, changes_of, map_name, usual_values
 from gapath.running.posing import first_of
 from gapath.running.shards import WHOLE, span
@@ -77,6 +78,7 @@ def made_again(logged: RunStarted, kernels: str = AUTO) -> Again:
         recorder = given.pop("recorder", None)  # what logs of version 5 and before said of that
         find_task(given.get("task"))
         root, chosen = split(WHOLE | given | _HOW)
+        check_name(root.name)
         settings = settings_of(root, chosen)
         task = with_kernels(find_task(root.task).make(settings), kernels)
         require(1 <= root.trials <= 10**6, "trials", root.trials, "an integer from 1 to 10^6")
@@ -130,7 +132,7 @@ def _problem(
     target = _place(own, "target") or grid.target
     grid = replace(grid, start=start, target=target)
     whole = "its start, target and problems"
-    remarks = [f"the map {grid.name}, {whole}, is what the log has of {path}", *told]
+    remarks = [f"the map {_said(grid.name)}, {whole}, is what the log has of {_said(path)}", *told]
     if isinstance(task, Posing):
         queries = logged.queries
         if queries is None or not len(queries):
@@ -162,8 +164,13 @@ def _known(settings: Mapping[str, Any], logged: Problem) -> tuple[dict[str, Grid
         kind = reader_of(path, name)
         own = load("map", kind).__module__.startswith("gapath.mapio.")
         maps[name] = replace(grid, name=Path(path).stem, source=kind, instance=0) if own else grid
-        told.append(f"{name} is what the log has of {path}")
+        told.append(f"{name} is what the log has of {_said(path)}")
     return maps, told
+
+
+def _said(word: str) -> str:
+    """Give a word of the log's author's such that none of it is taken for the verdict."""
+    return word if re.fullmatch(r"[\w.,/=\[\]+-]+", word) else repr(word)
 
 
 def _place(settings: Mapping[str, Any], name: str) -> Field | None:
@@ -179,7 +186,7 @@ def _place(settings: Mapping[str, Any], name: str) -> Field | None:
 def _method(task: Task, settings: Mapping[str, Any], logged: str) -> tuple[str, list[str]]:
     """Give a method's name, and say so if that is its author's alone."""
     group = task.groups[0]
-    remark = [f"the name of its {group}, {logged}, is its author's"]
+    remark = [f"the name of its {group}, {_said(logged)}, is its author's"]
     fitting = (n for n in yaml_names(group) if logged == n or logged.startswith(f"{n}["))
     preset = next(fitting, None)
     if preset is None:

@@ -140,6 +140,17 @@ def conf_folder() -> str:
     return str(files("gapath.conf"))
 
 
+def check_name(name: str) -> None:
+    """Raise InputError for what no experiment may be called."""
+    require(
+        name.replace("_", "").replace("-", "").isalnum(),
+        "name",
+        repr(name),
+        "letters, digits, - and _",
+    )
+    require(name not in RESERVED, "name", name, "another: the report's files lie there")
+
+
 def make_run(
     config: DictConfig, choices: Mapping[str, str | None], overridden: Collection[str] = ()
 ) -> Run:
@@ -171,13 +182,7 @@ def make_run(
     require(1 <= root.threads <= 256, "threads", root.threads, "an integer from 1 to 256")
     require(0 <= root.seed < 2**64, "seed", root.seed, "an integer in [0, 2^64)")
     require(root.output.strip() != "", "output", repr(root.output), "a folder")
-    require(
-        root.name.replace("_", "").replace("-", "").isalnum(),
-        "name",
-        repr(root.name),
-        "letters, digits, - and _",
-    )
-    require(root.name not in RESERVED, "name", root.name, "another: the report's files lie there")
+    check_name(root.name)
     useful = task.threaded or root.threads == 1
     require(useful, "threads", root.threads, f"1 with task={task.name}, which they do not speed up")
     settings = settings_of(root, chosen)

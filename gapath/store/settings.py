@@ -34,7 +34,7 @@ MOST_NODES, DEEPEST = 10_000, 32
 LONGEST_WHOLE = 400
 """Characters of a whole number; Python refuses to show one of 4300 digits."""
 
-_STEP = re.compile(r"\[(\d*)\]|\.?([^.\[\]]+)|\.$")
+_STEP = re.compile(r"\[(\d{0,9})\]|\.?([^.\[\]]+)|\.$")
 
 
 def flatten(value: object, name: str = "") -> dict[str, Value]:
@@ -188,8 +188,9 @@ def of_text(text: str) -> dict[str, Value]:
     Raises
     ------
     InputError
-        If it is not just as `text_of` writes it, is longer than `MAX_TEXT`, asks for what stands
-        elsewhere (``${...}``), or has a name of more parts than `DEEPEST`.
+        If it is not just as `text_of` writes it, is longer than `MAX_TEXT`, has more than
+        `MOST_NODES` settings, asks for what stands elsewhere (``${...}``), or has a name of more
+        parts than `DEEPEST`.
     """
     settings: dict[str, Value] = {}
     size = len(text)
@@ -198,6 +199,7 @@ def of_text(text: str) -> dict[str, Value]:
         name, colon, shown = line.partition(": ")
         try:
             value = json.loads(shown)
+            str(value).encode()  # half a character, as JSON may have it, is no text
         except (ValueError, RecursionError) as error:
             raise InputError("settings", line, "name: value") from error
         plain = value is None or isinstance(value, str | int | float | bool)
@@ -205,6 +207,7 @@ def of_text(text: str) -> dict[str, Value]:
         require("${" not in line, "settings", line, "plain values, nothing to be filled in")
         require(len(_STEP.findall(name)) <= DEEPEST, "settings", line, "a shorter name")
         settings[name] = value
+        require(len(settings) <= MOST_NODES, "settings", "too many", f"at most {MOST_NODES}")
     require(text == text_of(settings), "settings", "other text", "lines as gapath writes them")
     return settings
 

@@ -167,7 +167,7 @@ def runs(draw):
             draw(counts),
             draw(counts),
             draw(st.dictionaries(NAMES, VALUES, max_size=3)),
-            draw(st.dictionaries(st.text(), VERSIONS, max_size=3)),
+            draw(st.dictionaries(VERSIONS, VERSIONS, max_size=3)),
             draw(paths()),
             draw(st.floats()),
         )

@@ -213,11 +213,7 @@ def run_started(text: Mapping[str, str], files: Sequence[Stored]) -> RunStarted:
         seed=told("seed", int),
         trials=told("trials", int),
         settings=settings,
-        versions={
-            name.removeprefix(_VERSION_OF): told(name, _version)
-            for name in text
-            if name.startswith(_VERSION_OF)
-        },
+        versions=_versions(text),
         optimal_path=arrays[OPTIMAL_PATH],
         optimal_cost=told("optimal_cost", float),
     )
@@ -292,10 +288,25 @@ def _names(text: str) -> list[str]:
     return names
 
 
+def _versions(text: Mapping[str, str]) -> dict[str, str]:
+    """Read versions, which are said beside what was found: names and words, no sentences."""
+    found = {}
+    for name in text:
+        if name.startswith(_VERSION_OF):
+            what = name.removeprefix(_VERSION_OF)
+            require(_WORD.fullmatch(what) is not None, "metadata", name, "version/ and a name")
+            found[what] = _told(text, name, _version)
+    require(len(found) <= _MOST_VERSIONS, "metadata", f"{len(found)} versions", "fewer")
+    return found
+
+
 def _version(text: str) -> str:
-    """Read a version, which is said beside what was found: no sentence, and not empty."""
-    assert re.fullmatch(r"[\w.+!-]{1,99}", text, re.ASCII)
+    assert _WORD.fullmatch(text)
     return text
+
+
+_WORD = re.compile(r"[\w.+!-]{1,99}", re.ASCII)
+_MOST_VERSIONS = 100
 
 
 def _pose(text: str) -> tuple[float, float, float]:

@@ -239,6 +239,42 @@ def test_a_version_is_no_sentence(version, plan, tmp_path, capsys):
     assert (code, out) == (2, "") and "metadata, version/numpy" in err
 
 
+@pytest.mark.parametrize("name", ["", "numpy 2.4; reproduced", "x" * 100, "\x1b[2J", "a\nb"])
+def test_nor_is_its_name_one(name, plan, tmp_path, capsys):
+    path = tmp_path / "run.mcap"
+    put_together(telling(taken_apart(plan), f"version/{name}", "1", trials=False), path)
+    code, out, err = told(capsys, "verify", path)
+    assert (code, out) == (2, "") and "metadata: got version/" in err and err.count("\n") == 1
+
+
+def test_nobody_has_so_many_versions(plan, tmp_path, capsys):
+    path, parts = tmp_path / "run.mcap", taken_apart(plan)
+    for i in range(101):
+        parts = telling(parts, f"version/x{i}", "1", trials=False)
+    put_together(parts, path)
+    code, out, err = told(capsys, "verify", path)
+    assert (code, out) == (2, "") and "versions, expected fewer" in err
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('name: "', 'name: "\\ud800', "settings"),
+        ('name: "', 'name: "../x; reproduced ', "settings of the log, name"),
+        ("", 20_000 * "planner.x: 0\n", "settings"),
+        ("", "".join(f"planner.x[{i}]: 0\n" for i in range(20_000)), "metadata, settings: got"),
+        ("", f"planner.x[{'9' * 5000}]: 0\n", "settings of the log, setting planner.x["),
+    ],
+)
+def test_settings_that_no_run_has_are_one_line(old, new, said, plan, tmp_path, capsys):
+    path, parts = tmp_path / "run.mcap", taken_apart(plan)
+    settings = next(e.metadata["settings"] for e in parts.entries if hasattr(e, "metadata"))
+    settings = settings.replace(old, new) if old else settings + new
+    put_together(telling(parts, "settings", settings, trials=False), path)
+    code, out, err = told(capsys, "verify", path)
+    assert (code, out) == (2, "") and said in err and err.count("\n") == 1
+
+
 def test_a_version_that_is_unknown_is_told_from_none(plan, tmp_path, capsys):
     path = tmp_path / "run.mcap"
     parts = telling(taken_apart(plan), "version/python", "unknown", trials=False)
