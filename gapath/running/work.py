@@ -1,5 +1,6 @@
 """How much a run is to do: counted before it begins, so that nobody waits for hours unawares."""
 
+import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -11,8 +12,11 @@ MUCH = 10**10
 
 _A_SECOND = 4 * 10**6  # individuals of GA 3; A* searches 10^7 fields
 
-_COUNTS = ("population", "max_epochs", "iterations", "tries", "effort")
+_COUNTS = ("population", "max_epochs", "iterations", "tries")
 """Settings whose product bounds what a planner tries each time it plans."""
+
+_OF_FIELDS, _MORE = "effort", "shortcuts"
+"""Settings of what it may do besides: times the map's fields, and as it is."""
 
 
 def work(task: Task, settings: Flat, fields: int) -> int:
@@ -34,20 +38,23 @@ def work(task: Task, settings: Flat, fields: int) -> int:
         it has, as often as it may plan.
     """
     given = nested(settings)
-    once = fields + sum(_tried(given.get(group)) for group in task.groups)
+    once = fields + sum(_tried(given.get(group), fields) for group in task.groups)
     return once * (task.most_plans(fields) if isinstance(task, Replanning) else 1)
 
 
-def _tried(settings: Any) -> int:
+def _tried(settings: Any, fields: int) -> int:
     if isinstance(settings, list):
-        return sum(map(_tried, settings))
+        return sum(_tried(each, fields) for each in settings)
     if not isinstance(settings, Mapping):
         return 0
-    product = 1
-    for name in _COUNTS:
-        value = settings.get(name)
-        product *= max(1, int(value)) if isinstance(value, int | float) else 1
-    return product + sum(map(_tried, settings.values()))
+
+    def value(name: str, least: int) -> float:
+        found = settings.get(name)
+        return max(least, found) if isinstance(found, int | float) else least
+
+    tried = math.prod(int(value(name, 1)) for name in _COUNTS)
+    tried += int(value(_OF_FIELDS, 0) * fields) + int(value(_MORE, 0))
+    return tried + sum(_tried(each, fields) for each in settings.values())
 
 
 def told(works: Iterable[tuple[int, int]]) -> str | None:

@@ -12,13 +12,16 @@ which has that of the manifest. Then
 
 Before step 1 a run that was there before is untouched. Whoever is killed after it leaves a status
 that speaks of a manifest that is not in its place: whoever takes the lock next finishes the other
-steps (`settle`), which may be done any number of times. Nothing else in the folder is touched.
+steps (`settle`), which may be done any number of times. Nothing else in the folder is touched; a
+file that the run before had not written, and that has a name of the new one's, gets another name.
 """
 
+import itertools
 import os
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import replace
+from pathlib import Path
 
 from gapath.errors import InputError, require
 from gapath.store.durable import named, part_of, publish, sync_folder
@@ -116,17 +119,27 @@ def settle(folder: RunFolder) -> None:
     manifest, work, last = _finished(folder), folder.work, part_of(folder.path / MANIFEST)
     if manifest is None:
         return
+    before = files_of(folder)
     with named(folder.path):
         for name in manifest.files:
             if os.path.lexists(work.path / name):
+                if before and name not in before:
+                    _keep(folder.path / name)
                 (work.path / name).replace(folder.path / name)
-        for name in files_of(folder).keys() - manifest.files.keys():
+        for name in before.keys() - manifest.files.keys():
             (folder.path / name).unlink(missing_ok=True)
         if os.path.lexists(work.path / MANIFEST):
             (work.path / MANIFEST).replace(last)
         sync_folder(folder.path)
     folder.clear()
     publish(last, folder.path / MANIFEST)
+
+
+def _keep(path: Path) -> None:
+    """Give a file that no run has written another name, the first that is free."""
+    if os.path.lexists(path):
+        names = (path.with_name(f"{path.name}.{i}") for i in itertools.count(1))
+        path.rename(next(name for name in names if not os.path.lexists(name)))
 
 
 def _finished(folder: RunFolder) -> Manifest | None:

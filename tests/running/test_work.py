@@ -37,6 +37,16 @@ def test_a_drive_may_plan_in_every_step(steps, words, once):
     assert 0 <= work(run.task, run.settings, fields) - steps * (fields + once) <= few * steps
 
 
+@pytest.mark.parametrize(("words", "least"), [
+    (["planner=memetic", "planner.effort=1e6"], 10**6 * 100),
+    (["planner=rrt_connect", "planner.shortcuts=1000000"], 10**6),
+])  # fmt: skip
+def test_what_is_done_beside_the_count_of_tries_counts(words, least):
+    run = run_of(*words)
+    fields = run.problem.map.weights.size
+    assert least <= work(run.task, run.settings, fields)
+
+
 def test_hours_are_told_before_they_begin():
     assert told([(10, MUCH // 20), (1, 0)]) is None
     assert "1000000 trials of up to 3e+07 individuals and fields each: up to 2.1e+03 hours" in str(

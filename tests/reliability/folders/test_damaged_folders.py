@@ -107,6 +107,21 @@ def test_only_what_the_run_before_wrote_is_replaced(tmp_path, monkeypatch):
     assert {name: (folder / name).read_bytes() for name in theirs} == theirs
 
 
+def test_a_file_that_the_run_before_had_not_written_is_kept_by_another_name(tmp_path):
+    run = small_run(tmp_path)
+    execute(run, "test")
+    folder = run_folder(run).path
+    (folder / "trial-0.rrd").write_text("mine")
+    (folder / "trial-0.rrd.1").write_text("mine, too")
+    both = small_run(tmp_path, recorders=("mcap", "rerun"), force=True)
+    for _ in range(2):
+        execute(both, "test")
+        assert is_whole(run_folder(run), run.settings) and run_folder(both).path == folder
+        assert (folder / "trial-0.rrd").stat().st_size > 99
+        mine = {path.suffix: path.read_text() for path in folder.glob("*.rrd.*")}
+        assert mine == {".1": "mine, too", ".2": "mine"}
+
+
 def _fail(*given):
     raise RuntimeError("a fault of a component")
 
