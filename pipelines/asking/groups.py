@@ -8,12 +8,10 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gapath.pipelines.numbers.statistics import wilson
-from gapath.store.results import Results, exact_sum
+from gapath.store.results import EVALUATIONS, SECONDS, Results, exact_sum
 
-EVALUATIONS = "evaluations"
-SECONDS = ("plan_time_s", "compute_time_s")
 SPENT = (EVALUATIONS, *SECONDS)
-"""What a trial spends: columns of the rows, of the seconds each task has its own."""
+"""What a trial spends."""
 
 FIGURES = ("runs", "trials", "success", "success_low", "success_high", "expected_evaluations",
            "expected_seconds")  # fmt: skip
@@ -37,10 +35,7 @@ def grouped(frame: pd.DataFrame, came: Sequence[Results], by: Sequence[str]) -> 
     DataFrame
         A row for each combination of values, in their order, with them; runs, trials; success,
         the share of trials that succeeded, and the ends of its 95 % interval (Wilson);
-        expected_evaluations and expected_seconds until one succeeds, those of failures counted
-        (infinite where none did); and of every result the mean over the trials where it is
-        defined. A method that evaluates nothing draws no random numbers, so that it has neither
-        interval nor expected evaluations.
+        and what `Results.figures` gives. A method that draws no random numbers has no interval.
     """
     number = frame.groupby(list(by), dropna=False, sort=True).ngroup().to_numpy()
     order = np.argsort(number, kind="stable")
@@ -52,9 +47,11 @@ def grouped(frame: pd.DataFrame, came: Sequence[Results], by: Sequence[str]) -> 
     for group in groups:
         total = {name: exact_sum(sums[group, i]) for i, name in enumerate(names)}
         count = dict(zip(names, counts[group].sum(axis=0).tolist(), strict=True))
-        figures = _figures(int(trials[group].sum()), int(succeeded[group].sum()), total, count)
-        means = {name: total[name] / count[name] for name in names if count[name]}
-        rows.append(means | {"runs": len(group)} | figures)
+        n, found = int(trials[group].sum()), int(succeeded[group].sum())
+        pool = Results(n, found, total, count)
+        low, high = wilson(found / n, n) if pool.drawn else (math.nan, math.nan)
+        ends = {"success_low": low, "success_high": high}
+        rows.append(pool.figures() | {"runs": len(group), "trials": n} | ends)
     keys = frame[list(by)].iloc[[group[0] for group in groups]].reset_index(drop=True)
     columns = dict.fromkeys([*FIGURES, *names])
     return keys.join(pd.DataFrame(rows, columns=[name for name in columns if name not in by]))
@@ -78,19 +75,3 @@ def _tables(
         for name, defined in each.counts.items():
             counts[i, place[name]] = defined
     return list(place), sums, counts
-
-
-def _figures(
-    trials: int, succeeded: int, total: dict[str, float], count: dict[str, int]
-) -> dict[str, float]:
-    drawn = total.get(EVALUATIONS) != 0
-    low, high = wilson(succeeded / trials, trials) if drawn else (math.nan, math.nan)
-    figures = {"trials": trials, "success": succeeded / trials}
-    figures |= {"success_low": low, "success_high": high}
-    spent = {"expected_evaluations": [EVALUATIONS] if drawn else [], "expected_seconds": SECONDS}
-    for name, columns in spent.items():
-        known = [column for column in columns if count.get(column)]
-        if known:
-            effort = sum(total[column] for column in known)
-            figures[name] = effort / succeeded if succeeded else math.inf
-    return figures
