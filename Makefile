@@ -13,7 +13,7 @@ help: ## list the targets
 # These give computing times, or take both cores, so they run alone; the others two at a time.
 TIMED := table1 drives drives_enclosed s04_drives s04_table1 m22 m22_concave field
 # What no paper has: one decision at a time, many settings; each takes minutes of its own.
-OWN := drive_choices s04_sweep
+OWN := drive_choices s04_sweep tune
 OTHERS := $(filter-out $(TIMED) $(OWN),$(basename $(notdir $(wildcard conf/experiment/*.yaml))))
 
 .PHONY: paper

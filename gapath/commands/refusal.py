@@ -151,6 +151,8 @@ def _found(error: BaseException, words: Sequence[str], sweep: bool) -> InputErro
     """Find the setting that an error of Hydra's is about, and what would be right."""
     if isinstance(error, MissingConfigException) and "/" in (error.missing_cfg_file or ""):
         group, _, name = error.missing_cfg_file.rpartition("/")
+        if right := installing(group, name):
+            return InputError(group, f"{name}, which is not installed", right)
         with _hydra():
             names = GlobalHydra.instance().config_loader().get_group_options(group)
         return InputError(group, name, one_of(name, names))
@@ -166,7 +168,7 @@ def _found(error: BaseException, words: Sequence[str], sweep: bool) -> InputErro
         chosen = [
             each
             for each in parsed
-            if each.key_or_group in groups and not isinstance(each.value(), dict)
+            if each.key_or_group in groups | _HYDRAS and not isinstance(each.value(), dict)
         ]
         plain = compose("config", return_hydra_config=True)
         faults = [_fault_of_choice(each, plain, sweep) for each in chosen]
@@ -177,6 +179,25 @@ def _found(error: BaseException, words: Sequence[str], sweep: bool) -> InputErro
                 others = [each for each in parsed if each not in chosen]
                 faults = [_fault_of_value(each, config, groups, sweep) for each in others]
         return next(filter(None, faults), None)
+
+
+_HYDRAS = {"hydra/launcher", "hydra/sweeper", "hydra/sweeper/sampler"}
+"""Groups of Hydra's that are chosen from."""
+
+_EXTRAS = {
+    "hydra/launcher/joblib": "joblib",
+    "hydra/launcher/submitit": "cluster",
+    "hydra/launcher/ray": "ray",
+    "hydra/sweeper/optuna": "tune",
+}
+"""What the choice of an engine or a sweeper begins with -> the extra of gapath that has it."""
+
+
+def installing(group: str, name: str) -> str:
+    """Say how to install what an engine or a sweeper needs; empty where that is not known."""
+    extras = (extra for begin, extra in _EXTRAS.items() if f"{group}/{name}".startswith(begin))
+    extra = next(extras, "")
+    return f"pip install 'gapath[{extra}]', or another one" if extra else ""
 
 
 @contextlib.contextmanager

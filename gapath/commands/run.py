@@ -79,9 +79,10 @@ def job(config: DictConfig) -> int:
     words = typed(hydra)
     os.chdir(hydra.runtime.cwd)  # where paths are typed, also with hydra.job.chdir=true
     try:
-        run = run_of(config, hydra.runtime, words)
+        run = run_of(config, hydra, words)
         warn(edited_meanwhile() if sweep else told([(run.trials, work_of(run))]))
-        again = command(words, hydra.runtime.config_sources)
+        alone = ["hydra.mode=RUN"] if searches(hydra) else []
+        again = command([*words, *alone], hydra.runtime.config_sources)
         launcher = hydra.runtime.choices["hydra/launcher"]
         asked = asker_of_job(hydra.job.num, launcher) if sweep else asker()
         # A sweep has a bar of its own.
@@ -105,15 +106,15 @@ def say(text: str) -> int:
     return 0
 
 
-def run_of(config: DictConfig, runtime: DictConfig, words: Sequence[str]) -> Run:
+def run_of(config: DictConfig, hydra: DictConfig, words: Sequence[str]) -> Run:
     """Check one job's settings and make its run.
 
     Parameters
     ----------
     config : DictConfig
         As Hydra composed it.
-    runtime : DictConfig
-        What Hydra says of how it did so.
+    hydra : DictConfig
+        Hydra's own configuration, which says how it did so.
     words : sequence of str
         What was set on the command line.
 
@@ -128,9 +129,17 @@ def run_of(config: DictConfig, runtime: DictConfig, words: Sequence[str]) -> Run
         For anything that is wrong.
     """
     check_used(words, config.task)
-    check_own(words, runtime)
+    check_own(words, hydra.runtime)
+    for name in settings_of(words):
+        useful = not name.startswith("search.") or searches(hydra)
+        require(useful, name, "no search", "hydra/sweeper=optuna, which does one")
     own = OmegaConf.masked_copy(config, [str(key) for key in config if key != "hydra"])
-    return make_run(own, dict(runtime.choices), settings_of(words))
+    return make_run(own, dict(hydra.runtime.choices), settings_of(words))
+
+
+def searches(hydra: DictConfig) -> bool:
+    """Tell whether the sweeper suggests settings, and wants to know what they come to."""
+    return "direction" in hydra.sweeper
 
 
 def typed(hydra: DictConfig) -> list[str]:
@@ -173,8 +182,8 @@ def check_apart(folder: Path, words: list[str], before: dict[Path, list[str]]) -
     require(first is words, "sweep", both, f"jobs that differ in more than {', '.join(HOW)}")
 
 
-_OWN_WAY = ("output=", "force=", "provenance=")
-"""Settings of who runs it, which somebody else who does the same has no use for."""
+_OWN_WAY = ("output=", "force=", "provenance=", "search.")
+"""Settings of who runs it or searches, which somebody else who does the same has no use for."""
 
 
 def command(words: Sequence[str], sources: Sequence[Mapping[str, str]]) -> str:

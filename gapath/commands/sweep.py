@@ -26,6 +26,8 @@ from omegaconf import DictConfig
 from gapath.commands import run as command
 from gapath.commands.asker import begin_sweep
 from gapath.commands.composing import Composer
+from gapath.commands.refusal import installing
+from gapath.commands.search import Search
 from gapath.commands.signals import following
 from gapath.commands.watching import Shown
 from gapath.errors import FAULTS, printable, require
@@ -40,12 +42,12 @@ _launcher = Plugins.instantiate_launcher
 
 MANY = 10**9
 
-_EXTRAS = {"joblib": "joblib", "submitit": "cluster", "ray": "ray"}
-"""What the name of an engine begins with -> the extra of gapath that has it."""
-
 
 class SweepCheck(Callback):  # type: ignore[misc]
     """Checks every job of a sweep before the first one runs, and keeps none of those done."""
+
+    def __init__(self) -> None:
+        self._search: Search | None = None
 
     def on_multirun_start(self, config: DictConfig, **kwargs: object) -> None:
         """Compose and check all jobs; exit with code 2 if any job's settings are wrong.
@@ -64,11 +66,16 @@ class SweepCheck(Callback):  # type: ignore[misc]
             params = config.hydra.sweeper.params or {}  # items() resolves them, as the sweeper does
             words = every = [*(f"{key}={value}" for key, value in params.items()), *words]
             parser = OverridesParser.create(config_loader=loader)
-            for words in BasicSweeper.split_arguments(parser.parse_overrides(every), None)[0]:
-                whole = compose(words)
-                sweep.add(command.run_of(whole, whole.hydra.runtime, words), words)
-            words = every
-            sweep.begin()
+            parsed = parser.parse_overrides(every)
+            if command.searches(config.hydra):
+                self._search = Search(config, compose, parsed, sweep)
+                sweep.open(self._search.place, self._search.most)
+            else:
+                for words in BasicSweeper.split_arguments(parsed, None)[0]:
+                    whole = compose(words)
+                    sweep.add(command.run_of(whole, whole.hydra, words), words)
+                words = every
+                sweep.begin()
         except FAULTS as error:
             sys.exit(command.refuse(error, words, sweep=True))
         command.ENDING.callback(sweep.end)
@@ -77,9 +84,24 @@ class SweepCheck(Callback):  # type: ignore[misc]
         ConfigLoaderImpl.load_sweep_config = lambda self, master_config, sweep_overrides: compose(
             sweep_overrides
         )
-        Plugins.instantiate_launcher = lambda self, hydra_context, task_function, config: _Engine(
-            _launcher(self, hydra_context, sweep.job, config), sweep
-        )
+        search = self._search
+
+        def launcher(self: Any, hydra_context: Any, task_function: Any, config: Any) -> Launcher:
+            engine = _Engine(_launcher(self, hydra_context, sweep.job, config), sweep)
+            return search.by(engine) if search else engine
+
+        Plugins.instantiate_launcher = launcher
+
+    def on_multirun_end(self, config: DictConfig, **kwargs: object) -> None:
+        """Have a search say what it found; exit if something cannot be done.
+
+        Hydra turns a callback's exceptions into warnings, but not an exit.
+        """
+        try:
+            if self._search is not None:
+                self._search.end()
+        except FAULTS as error:
+            sys.exit(command.refuse(error, [], sweep=True))
 
     def on_job_end(self, config: DictConfig, job_return: Any, **kwargs: object) -> None:
         """Let go of a job's configurations: Hydra keeps what it returned until a sweep ends."""
@@ -87,11 +109,13 @@ class SweepCheck(Callback):  # type: ignore[misc]
 
 
 def _check_engine(config: DictConfig) -> None:
-    """Raise InputError if the package of the chosen engine is not installed."""
+    """Raise InputError if the chosen engine is not installed, or who asks for jobs is unknown."""
+    sweeper = str(config.hydra.runtime.choices["hydra/sweeper"])
+    usual = sweeper == "basic" or command.searches(config.hydra)
+    require(usual, "hydra/sweeper", sweeper, "one of basic, optuna")
     name = str(config.hydra.runtime.choices["hydra/launcher"])
     known = str(config.hydra.launcher._target_) in Plugins.instance().class_name_to_class
-    extra = next((e for begin, e in _EXTRAS.items() if name.startswith(begin)), None)
-    right = f"pip install 'gapath[{extra}]', or another engine" if extra else "one that is there"
+    right = installing("hydra/launcher", name) or "one that is there"
     require(known, "hydra/launcher", f"{name}, which is not installed", right)
 
 
@@ -153,6 +177,8 @@ class _Sweep:
     begun: int = 0
     """Jobs that engines got so far."""
     file: SweepFile | None = None
+    most: int = 0
+    """How many jobs it may come to."""
 
     def add(self, run: Run, words: list[str]) -> None:
         """Add a checked job; raises InputError if it is another one's run."""
@@ -179,12 +205,24 @@ class _Sweep:
         for other in unfinished(place.parent):
             if other.path.parent == place and not other.alive and {*other.folders} != {*names}:
                 command.warn(_told_apart(other.path, other.left, difference(other.command, line)))
-        jobs, whole = len(self.folders), len(self.whole)
-        self.file = SweepFile(
-            place, {"command": line, "jobs": jobs, "whole": whole, "folders": names}
-        )
-        begin_sweep(jobs - whole)
+        self.open(place)
         command.warn(told(self.works))
+
+    def open(self, place: Path, most: int = 0) -> None:
+        """Make the file in a folder, for so many jobs or those there are; raises InputError."""
+        self.most = max(most, len(self.folders))
+        self.file = SweepFile(place, self._head())
+        begin_sweep(self.most - len(self.whole))
+
+    def grow(self) -> None:
+        """Note jobs that were added since."""
+        assert self.file is not None
+        tell(self.file.path, **self._head())
+
+    def _head(self) -> dict[str, Any]:
+        line = shlex.join(["gapath", *sys.argv[1:]])
+        names = [folder.name for folder in self.folders]
+        return {"command": line, "jobs": self.most, "whole": len(self.whole), "folders": names}
 
     @property
     def job(self) -> _Job:

@@ -76,6 +76,10 @@ HOW = ("output", "force", "threads", "kernels", "provenance")
 """Settings of how to run, which change no result: no part of a run's settings."""
 
 
+SEARCH = "search"
+"""The group of who searches for settings (`gapath.commands.search`), which no run knows of."""
+
+
 @dataclass(frozen=True, eq=False)
 class Run:
     """One job: a setting and a batch of trials, checked and ready.
@@ -262,11 +266,11 @@ def split(loose: Mapping[str, Any]) -> tuple[Root, dict[str, Any]]:
         If a setting of the root is unknown, missing or mistyped, or a group of the task is missing.
     """
     groups = {group for name in kinds("task") for group in find_task(name).groups}
-    known = [*(each.name for each in dataclasses.fields(Root)), *sorted(groups)]
+    known = [*(each.name for each in dataclasses.fields(Root)), *sorted(groups), SEARCH]
     for name in loose:
         if name not in known:
             raise InputError(name, "an unknown name", one_of(name, known))
-    root: Root = typed(Root, {k: v for k, v in loose.items() if k not in groups}, "")
+    root: Root = typed(Root, {k: v for k, v in loose.items() if k not in {*groups, SEARCH}}, "")
     root.map = normalised("map", root.map, "map")
     root.recorder = {
         name: normalised("recorder", values, f"recorder.{name}")

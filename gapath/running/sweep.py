@@ -168,7 +168,8 @@ class Standing:
         if "command" in line:
             jobs, whole, began = _count(line["jobs"]), _count(line["whole"]), _count(line["at"])
             folders = [str(name) for name in line["folders"]]
-            self.command, self.began, self.folders = str(line["command"]), began, folders
+            self.command, self.folders = str(line["command"]), folders
+            self.began = self.began or began  # more jobs may be told later
             self.jobs, self.whole = jobs, min(whole, jobs)
         elif "begun" in line:
             self.running[_count(line["begun"])] = " ".join(map(str, line["words"]))

@@ -8,7 +8,8 @@ import pytest
 
 MAPS = r"one of \d+ names, see gapath --help"
 ROOT = "choice, corner_cutting, drive, experiment, force, kernels, map, name, navigator, output, "
-ROOT += "planner, provenance, recorder, scenario, seed, shard, shards, task, threads, trials"
+ROOT += "planner, provenance, recorder, scenario, search, seed, shard, shards, task, threads, "
+ROOT += "trials"
 
 CASES = {
     # A name that there is not.
@@ -18,7 +19,7 @@ CASES = {
     "map=": f"map: got '', expected {MAPS}",
     "recorder=[mcap,reruns]": "recorder: got reruns, expected one of mcap, none, rerun; did you "
     r"mean rerun\?",
-    "experiment=tabl1": r"experiment: got tabl1, expected one of .*, table1; did you mean table1\?",
+    "experiment=tabl1": r"experiment: got tabl1, expected one of .*, tune; did you mean table1\?",
     "task=drvie": r"task: got drvie, expected one of drive, plan, scenario; did you mean drive\?",
     "task=": "task: got '', expected one of drive, plan, scenario",
     "corner_cutting=forbidd": r"corner_cutting: got forbidd, expected one of .*mean forbid\?",
@@ -32,7 +33,7 @@ CASES = {
     "-m map=field_rooms,field_maze map.width=90": r"map\.width: got an unknown name with this map, "
     r"expected map=field_clutter or .*, which has it; .* over several of these, \+\+map\.width=90",
     "+foo=1": "foo: got an unknown name, expected one of task, .*, drive, navigator, planner, "
-    "scenario",
+    "scenario, search",
     "plannr=ga1": rf"plannr: got an unknown name, expected one of {ROOT}; did you mean planner\?",
     "experimnt=table1": rf"experimnt: got an unknown name, .* {ROOT}; did you mean experiment\?",
     "~foo": f"foo: got an unknown name, expected one of {ROOT}",
