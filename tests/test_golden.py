@@ -65,6 +65,12 @@ PUBLISHED = {
     ],
     "s04_table1": ["trials=2", "planner.max_epochs=100"],
     "table1": ["trials=2"],
+    "tune": [
+        "trials=1",
+        "hydra.sweeper.n_trials=2",
+        "search.over=['map.instance=1']",
+        "search.unseen=['map.instance=1001']",
+    ],
 }
 """Every experiment that needs no data from elsewhere, and what makes it small."""
 
