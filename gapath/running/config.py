@@ -146,12 +146,8 @@ def conf_folder() -> str:
 
 def check_name(name: str) -> None:
     """Raise InputError for what no experiment may be called."""
-    require(
-        name.replace("_", "").replace("-", "").isalnum(),
-        "name",
-        repr(name),
-        "letters, digits, - and _",
-    )
+    plain = name.replace("_", "").replace("-", "").isalnum()
+    require(plain, "name", repr(name), "letters, digits, - and _")
     require(name not in RESERVED, "name", name, "another: the report's files lie there")
 
 
