@@ -54,16 +54,19 @@ def watched(command: str, kept: str = "") -> Iterator[None]:
 
 
 @contextmanager
-def following(over: Callable[[], bool]) -> Iterator[None]:
+def following(over: Callable[[], bool], process: int | None) -> Iterator[None]:
     """Work for another process: what that one is told by a signal ends this one, too, silently.
 
-    Between two pieces of work this process ends with the one that started it, as it may wait for
-    a lock that nobody gives back.
+    Between two pieces of work this process ends with the other one, or with the one that started
+    it, as it may wait for a lock that nobody gives back.
 
     Parameters
     ----------
     over : callable
         Tells whether the other process is gone, however it ended.
+    process : int or None
+        Its number, if it is of this machine: it may be gone, and this one be nobody's child, by
+        the time that it begins to work.
     """
     parent = os.getppid()
     new = not _followed
@@ -74,7 +77,18 @@ def following(over: Callable[[], bool]) -> Iterator[None]:
     try:
         yield
     finally:
-        _followed[:] = [lambda: os.getppid() != parent]
+        _followed[:] = [lambda: os.getppid() != parent or not _lives(process)]
+
+
+def _lives(process: int | None) -> bool:
+    try:
+        if process is not None:
+            os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:  # it is another user's
+        pass
+    return True
 
 
 _followed: list[Callable[[], bool]] = []

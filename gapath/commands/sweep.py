@@ -148,8 +148,10 @@ class _Job:
         out, err = StringIO(), StringIO()
         sweep = Standing(path)
         # Of a process on another machine nobody here knows.
-        over = (lambda: not sweep.alive) if self.host == host() else (lambda: False)
-        with redirect_stdout(out), redirect_stderr(err), following(over):
+        here = self.host == host()
+        over = (lambda: not sweep.alive) if here else (lambda: False)
+        process = self.pid if here else None
+        with redirect_stdout(out), redirect_stderr(err), following(over, process):
             return self._done(config, words, path, number, out, err)
 
     def _done(

@@ -1,6 +1,9 @@
 """Sweeps on every engine: checked first, the same rows, exit codes, whole runs left alone."""
 
 import json
+import signal
+import subprocess
+import sys
 import tracemalloc
 
 import pyarrow.parquet as pq
@@ -210,3 +213,16 @@ def test_of_a_file_that_is_no_sweeps_no_more_is_read_than_of_one(tmp_path):
         standing.read()
         standing.read()
         assert standing._file.tell() <= 2**20
+
+
+def test_a_worker_whose_sweep_was_gone_before_it_began_ends_too():
+    idle = (
+        "import sys, time; from gapath.commands.signals import following\n"
+        "with following(lambda: False, int(sys.argv[1])): pass\n"
+        "print('idle', flush=True); time.sleep(60)"
+    )
+    gone = subprocess.Popen(["true"])
+    gone.wait()
+    worker = [sys.executable, "-c", idle, str(gone.pid)]
+    done = subprocess.run(worker, timeout=50, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (128 + signal.SIGTERM, "idle\n", "")

@@ -53,7 +53,10 @@ def main(crate):
         }
         answer[severity] = {"issues": sorted(found), "checks": result.statistics.total_checks}
     said = io.StringIO()
-    dump_crate_actions(crate, said)
+    try:
+        dump_crate_actions(crate, said)
+    except Exception as error:  # it stumbles over crates that are no valid ones
+        said.write(repr(error))
     print(json.dumps(answer | {"runcrate": said.getvalue()}))
 
 
