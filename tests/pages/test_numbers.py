@@ -1,0 +1,122 @@
+"""Every number that a page takes from a run is what the tables of results give."""
+
+import csv
+import re
+
+import bound
+import pytest
+
+from gapath.pipelines.numbers.statistics import wilson
+from gapath.pipelines.numbers.text import percent
+
+RESULTS = bound.ROOT / bound.RESULTS
+BOUND, WHOLE = bound.read()
+PAGES = bound.read_pages(BOUND, WHOLE)
+
+
+@pytest.fixture(scope="module")
+def connection():
+    return bound.tables(RESULTS)
+
+
+def test_every_number_is_what_its_query_gives(connection):
+    wrong = bound.faults(BOUND, PAGES, connection)
+    assert not wrong, "\n".join(map(str, ["see CONTRIBUTING.md, A number in the pages", *wrong]))
+
+
+def test_sections_that_are_bound_wholly_have_no_other_number_in_a_table():
+    assert list(bound.unbound(WHOLE, BOUND, PAGES)) == []
+
+
+def test_each_number_that_is_another_is_noticed(connection):
+    for name, page in PAGES.items():
+        mine = [each for each in BOUND if each.where == name]
+        places = sorted(span for each in mine for span in each.found(PAGES)[0].regs[1:])
+        shown = [page[start:end] for start, end in places]
+        for start, end in reversed(places):
+            page = page[:start] + other(page[start:end]) + page[end:]
+        wrong = bound.faults(mine, {name: page}, connection)
+        assert sorted(bound._plain(f.value) for f in wrong) == sorted(map(bound._plain, shown))
+
+
+def other(shown):
+    """A number with another last digit."""
+    return "7" if shown == "∞" else shown[:-1] + ("1" if shown[-1] != "1" else "2")
+
+
+def test_a_table_with_another_number_is_noticed(tmp_path):
+    rows = list(csv.DictReader((RESULTS / "table1.csv").open()))
+    (cell,) = (r for r in rows if r["map"] == "kg18_test3" and r["preset"] == "ga1")
+    cell["found"] = str(int(cell["found"]) - 10)
+    with (tmp_path / "table1.csv").open("w", newline="") as file:
+        writer = csv.DictWriter(file, list(rows[0]))
+        writer.writeheader()
+        writer.writerows(rows)
+    wrong = bound.faults(BOUND, PAGES, bound.tables(RESULTS, tmp_path))
+    said = {(fault.where, fault.shown, fault.value) for fault in wrong}
+    assert {("README.md", "64.9", "63.9"), ("docs/maps.md", "64.9", "63.9")} <= said
+
+
+@pytest.mark.parametrize(
+    ("page", "says"),
+    [
+        ("It takes 5 ms.", "0 times, not once"),
+        ("It takes 5 s. It takes 5 s.", "2 times, not once"),
+        ("It takes 4 s.", "4 -> 5"),
+        ("It takes 15 s.", "15 -> 5"),
+        ("It takes\n5.1 s.", "5.1 -> 5.0"),
+        ("It takes 5 s.", ""),
+        ("It takes\n5.0 s.", ""),
+    ],
+)
+def test_a_text_that_is_wrong_is_noticed(page, says, connection):
+    each = bound.Bound("page", "takes {} s.", "select 4.96")
+    wrong = bound.faults([each], {"page": page}, connection)
+    assert says in str(wrong[0]) if says else not wrong
+
+
+@pytest.mark.parametrize("query", ["select 5, 6", "select null", "select 5 where false", "from no"])
+def test_a_query_that_gives_something_else_is_noticed(query, connection):
+    (fault,) = bound.faults([bound.Bound("p", "a {} b", query)], {"p": "a 5 b"}, connection)
+    assert fault.value is None
+    assert query in str(fault)
+
+
+def test_a_table_with_a_number_of_nobodys_is_noticed():
+    page = "# One\n\n| map | found |\n| --- | --- |\n| 1 | 5 % |\n| 2 | 6 % |\n\n# Two\n"
+    each = bound.Bound("p", "| 1 | {} % |", "select 5")
+    assert list(bound.unbound(["p#one"], [each], {"p": page})) == ["p#one: | 2 | 6 % |"]
+    literal = bound.Bound("p", "| 2 | 6 % |", "select 6 where false")
+    assert list(bound.unbound(["p#one"], [each, literal], {"p": page})) == ["p#one: | 2 | 6 % |"]
+    given = literal._replace(given="the paper's")
+    assert list(bound.unbound(["p#one"], [each, given], {"p": page})) == []
+
+
+@pytest.mark.parametrize("of", [(0, 20), (7, 20), (1, 3000), (2999, 3000), (20, 20)])
+def test_what_queries_may_use_is_what_reports_use(of, connection):
+    rate, n = of[0] / of[1], of[1]
+    made = connection.execute(f"select low({rate}, {n}), high({rate}, {n}), percent({rate})")
+    *ends, text = made.fetchone()
+    assert ends == pytest.approx(wilson(rate, n), abs=1e-12)
+    assert text == percent(rate)
+
+
+@pytest.mark.parametrize(
+    ("number", "text"),
+    [("0.02349", "0.023"), ("9.96", "10"), ("28957", "29000"), ("0", "0"), ("'inf'", "∞")],
+)
+def test_significant_digits(number, text, connection):
+    made = connection.execute(f"select significant({number}::double, 2)").fetchone()
+    assert made == (text,)
+
+
+def test_every_table_has_a_question_that_makes_it_and_leads_to_its_runs():
+    questions = {path.stem for path in RESULTS.glob("*.sql")}
+    assert questions == {path.stem for path in RESULTS.glob("*.csv")}
+    for name in questions:
+        text = (RESULTS / f"{name}.sql").read_text("utf-8")
+        assert re.match(r"-- .*(gapath experiment=|make )", text), name
+        columns = (RESULTS / f"{name}.csv").read_text("utf-8").partition("\n")[0].split(",")
+        elsewhere = re.search(r"whose runs (\w+)\.csv has", text)
+        assert {"key", "keys"} & set(columns) or elsewhere[1] in questions, name
+    assert sum(path.stat().st_size for path in RESULTS.glob("*.csv")) < 500_000
