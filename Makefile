@@ -55,6 +55,11 @@ sweep: $(VENV)/ready ## vary what S04 leaves open: 36 settings of 24 cells (some
 	@$(BIN)/gapath experiment=s04_sweep output="$(OUTPUT)"
 	@$(BIN)/gapath-report "$(OUTPUT)"
 
+# After paper, unseen and choices, or some of them: of what was not run the tables stay as they are. ACCEPT names tables, or is all.
+.PHONY: numbers
+numbers: $(VENV)/ready ## which numbers of the pages do new runs no longer give? ACCEPT=all takes the new ones
+	@$(BIN)/python tests/pages/renew.py "$(OUTPUT)" $(if $(ACCEPT),--accept $(ACCEPT))
+
 .PHONY: test
 test: $(VENV)/ready ## run all tests
 	@$(BIN)/python -m pytest

@@ -69,9 +69,9 @@ class Fault(NamedTuple):
         return f"{self.where}:{self.line}: {self.said}"
 
 
-def read(root=ROOT):
+def read():
     """Read `docs/numbers.toml`: what is bound, and the sections whose tables are so wholly."""
-    found = tomllib.loads((root / "docs" / "numbers.toml").read_text("utf-8"))
+    found = tomllib.loads((ROOT / "docs" / "numbers.toml").read_text("utf-8"))
     whole = found["whole"]
     bound = [
         Bound(page, **each)
@@ -82,10 +82,10 @@ def read(root=ROOT):
     return bound, whole
 
 
-def read_pages(bound, whole, root=ROOT):
+def read_pages(bound, whole):
     """Read the pages that are named: name -> text."""
     names = {each.where for each in bound} | {name.partition("#")[0] for name in whole}
-    return {name: (root / name).read_text("utf-8") for name in sorted(names)}
+    return {name: (ROOT / name).read_text("utf-8") for name in sorted(names)}
 
 
 def tables(*folders):

@@ -2,9 +2,11 @@
 
 import csv
 import re
+import sys
 
 import bound
 import pytest
+import renew
 
 from gapath.pipelines.numbers.statistics import wilson
 from gapath.pipelines.numbers.text import percent
@@ -120,3 +122,30 @@ def test_every_table_has_a_question_that_makes_it_and_leads_to_its_runs():
         elsewhere = re.search(r"whose runs (\w+)\.csv has", text)
         assert {"key", "keys"} & set(columns) or elsewhere[1] in questions, name
     assert sum(path.stat().st_size for path in RESULTS.glob("*.csv")) < 500_000
+
+
+def test_new_runs_are_held_against_the_pages_and_accepted(gapath, tmp_path, monkeypatch, capfd):
+    gapath("map=kg18_test1", "planner=ga1", "trials=3", "recorder=none", "name=mine")
+    results, page = tmp_path / bound.RESULTS, tmp_path / "page.md"
+    results.mkdir(parents=True)
+    results.with_name("numbers.toml").write_text(
+        'whole = []\n[["page.md"]]\ntext = "{} trials"\nquery = "select trials from mine"\n'
+    )
+    question = "select key, count(*) as trials from trials where experiment = 'mine' group by key"
+    (results / "mine.sql").write_text(f"-- gapath name=mine\n{question}")
+    (results / "mine.csv").write_text("key,trials\nbefore,2\n")
+    page.write_text("Of 2 trials.")
+    monkeypatch.setattr(bound, "ROOT", tmp_path)
+
+    def said(*words):
+        monkeypatch.setattr(sys, "argv", ["renew.py", str(tmp_path / "out"), *words])
+        with pytest.raises(SystemExit) as stop:
+            renew.main()
+        return stop.value.code, capfd.readouterr().out.splitlines()
+
+    assert said() == (1, ["page.md:1: 2 -> 3 in Of 2 trials.", "1 numbers changed"])
+    assert said("--accept", "other")[1] == ["0 numbers changed, and are written"]
+    assert page.read_text() == "Of 2 trials."
+    assert said("--accept", "mine")[0] == 0
+    assert page.read_text() == "Of 3 trials."
+    assert said() == (0, ["0 numbers changed"])
