@@ -266,3 +266,16 @@ def polygons(draw, most=20, least=1):
         points.append(path[at])
     assume(len(points) >= least)
     return problem, points
+
+
+@st.composite
+def two_polygons(draw):
+    """A problem, and two polygons with the same ends, the second one's vertices the first one's."""
+    problem, first = draw(polygons())
+    weights, rule = problem.map.weights, problem.corner_cutting.name.lower()
+    second = [first[0]]
+    while second[-1] != first[-1]:
+        at = max(i for i, point in enumerate(first) if point == second[-1])
+        free = [i for i in range(at + 1, len(first)) if is_free(weights, first[at], first[i], rule)]
+        second.append(first[draw(st.sampled_from(free))])
+    return problem, first, second

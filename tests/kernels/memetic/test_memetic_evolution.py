@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from naive_memetic import packed, places, unpacked, walled_problems
+from naive_memetic import packed, places, unpacked, vertices, walled_problems
 
 from gapath.grid import GridMap
+from gapath.kernels.jit import kernel
+from gapath.kernels.memetic import evolution
 from gapath.kernels.memetic.account import (
     BEST,
     CHANGES,
@@ -34,7 +36,17 @@ from gapath.kernels.memetic.account import (
     WALLS,
 )
 from gapath.kernels.memetic.evolution import evolve
-from gapath.kernels.memetic.population import END, EPOCH, GAIN, OPERATOR, ROW, TOTAL
+from gapath.kernels.memetic.population import (
+    END,
+    EPOCH,
+    GAIN,
+    OPERATOR,
+    ROW,
+    TOTAL,
+    individuals,
+    put,
+)
+from gapath.kernels.memetic.rerouting import Room
 from gapath.kernels.memetic.walls import BOTH, LEFT, NO_WAY, RIGHT
 from gapath.kernels.rng import probability_threshold, stream
 from gapath.problem import CornerCutting
@@ -144,6 +156,11 @@ def test_who_asks_is_told_of_a_first_path_alone_or_the_same(problem, seed):
         assert asked[1:] == ([], [], [])
     else:
         assert asked == told
+    if told.numbers[STATUS] > 2 and asked.numbers[STATUS] != CROWDED:
+        least = problem.map.least_weight(problem.start, problem.target)
+        evenly = (told.numbers[STATUS] - 2) * least
+        evenly += slow.weight(problem.map.weights, problem.target)
+        assert (asked.numbers[STATUS] == UNEVEN) == (told.numbers[SHARES + WALLS] > evenly)
 
 
 def clutter(number):
@@ -181,6 +198,42 @@ def test_each_pair_is_crossed_though_chance_hardly_has_it_but_not_where_it_never
 ):
     told = [evolved(clutter(i), 4, effort=30.0, chances=(chance, 0.0), seed=i) for i in range(6)]
     assert any(CROSSOVER in gained(each) for each in told) == crosses
+
+
+@kernel
+def crossover(table, row, other, rule, lower, members, room):
+    return evolution.crossover(table, row, other, rule, lower, members, room)
+
+
+@given(slow.two_polygons())
+def test_a_child_takes_the_cheaper_ones_place_if_it_is_cheaper_still(drawn):
+    problem, *both = drawn
+    weights, name = problem.map.weights, problem.corner_cutting.name.lower()
+    costs = [slow.ray_costs(weights, points, name) for points in both]
+    paths = [slow.fields(weights, points, name) for points in both]
+    for order in ([0, 1], [1, 0]):
+        members, totals = individuals(3, 1), [sum(costs[k]) for k in order]
+        for row, k in enumerate(order):
+            paid = np.array([*costs[k], 0])
+            members = put(members, row, vertices(both[k]), paid, len(both[k]), sum(costs[k]))
+        room = Room(
+            np.full(problem.map.table.size, 1, dtype=np.int32),
+            *(np.full(1, 7, dtype=np.uint32) for _ in range(3)),
+        )
+        row, gain, _, members, _ = crossover(
+            problem.map.table, 0, 1, int(problem.corner_cutting), np.int64(0), members, room
+        )
+        assert row == int(totals[1] < totals[0])
+        kept = both[order[1 - row]]
+        size = members.sizes[1 - row]
+        assert places(members.points[1 - row, :size]) == kept
+        assert members.totals[1 - row] == totals[1 - row]
+        assert members.totals[row] == totals[row] - max(gain, 0)
+        found = places(members.points[row, : members.sizes[row]])
+        assert sum(slow.ray_costs(weights, found, name)) == members.totals[row]
+        child = slow.cross(weights, paths[order[row]], paths[order[1 - row]])[0]
+        assert (gain > 0) == (slow.cost(weights, child) < totals[row])
+        assert members.totals[row] <= slow.cost(weights, child)
 
 
 def test_it_stops_at_a_path_that_is_good_enough():

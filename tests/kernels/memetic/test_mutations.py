@@ -90,6 +90,17 @@ def test_every_place_of_a_polygon_is_proposed():
         }, kind
 
 
+@pytest.mark.parametrize("kind", [MOVE, INSERT])
+def test_vertices_may_come_to_any_field_and_to_each_border(kind):
+    points, words = vertices([(2, 1), (3, 2), (4, 1)]), np.empty(4, dtype=np.uint64)
+    new, random, seen = np.empty((2, 2), dtype=np.int32), stream(2), set()
+    for _ in range(8000):
+        fill(random, words)
+        propose(kind, points, 3, 4, 6, words, new)
+        seen.add((int(new[0, 0]), int(new[0, 1])))
+    assert seen == {(x, y) for x in range(6) for y in range(4)}
+
+
 @given(proposals())
 def test_what_is_replaced_is_free_and_never_dearer(drawn):
     problem, points, _, i, j, new = drawn

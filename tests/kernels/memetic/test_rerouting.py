@@ -2,11 +2,15 @@
 
 import naive_memetic as slow
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from naive_memetic import packed, places, polygons, unpacked, vertices, walled_problems
 
 from gapath.grid import GridMap
+from gapath.kernels.jit import kernel
+from gapath.kernels.memetic import rerouting
+from gapath.kernels.memetic.account import CROWDED
 from gapath.kernels.memetic.population import individuals, put
 from gapath.kernels.memetic.rerouting import Room, crossed, reroute, walked_path
 from gapath.kernels.memetic.walls import BOTH, LEFT, RIGHT
@@ -34,17 +38,10 @@ def test_a_walk_back_is_the_one_from_the_target_turned_round(problem, hands, var
     assert walks[0] == (*walks[1][:2], walks[1][2][::-1])
 
 
-@given(polygons(), st.data())
-def test_polygons_are_crossed_as_the_paths_of_their_rays(drawn, data):
-    problem, first = drawn
+@given(slow.two_polygons())
+def test_polygons_are_crossed_as_the_paths_of_their_rays(drawn):
+    problem, first, second = drawn
     weights, name = problem.map.weights, problem.corner_cutting.name.lower()
-    second = [first[0]]
-    while second[-1] != first[-1]:
-        at = max(i for i, point in enumerate(first) if point == second[-1])
-        free = [
-            i for i in range(at + 1, len(first)) if slow.is_free(weights, first[at], first[i], name)
-        ]
-        second.append(first[data.draw(st.sampled_from(free))])
     paths = [slow.fields(weights, points, name) for points in (first, second)]
     count, cost, fields, room = crossed(
         problem.map.table, vertices(first), len(first), vertices(second), len(second),
@@ -54,6 +51,41 @@ def test_polygons_are_crossed_as_the_paths_of_their_rays(drawn, data):
     assert unpacked(room.child[:count]) == child
     assert cost == slow.cost(weights, child)
     assert fields == sum(map(len, paths))
+
+
+@kernel
+def first_walk(table, ends, rule, settings, stream):
+    return rerouting.first_walk(table, ends, rule, settings, stream)
+
+
+@pytest.mark.parametrize(("wide", "asks"), [(1, True), (1, False), (2, True)])
+@pytest.mark.parametrize("seed", range(4))
+def test_who_asks_leaves_corridors_of_a_field_after_eight_steps_a_row_and_column(wide, asks, seed):
+    """A maze, each cell open to the one above or to its left; the target is in it or closed in."""
+    random, cells = np.random.default_rng(seed), 20
+    weights = np.full((2 * cells - 1, 2 * cells - 1), 1.0)
+    weights[::2, ::2] = 0.5
+    for y, x in np.ndindex(cells, cells):
+        if x or y:
+            up = y and (x == 0 or random.integers(2))
+            weights[2 * y - bool(up), 2 * x - (not up)] = 0.5
+    weights = np.kron(weights, np.ones((wide, wide)))
+    end = weights.shape[0] - 1
+    for closed in (False, True):
+        weights[end - 2 * wide, end - wide :] = weights[end - wide :, end - 2 * wide] = 1.0
+        if not closed:
+            weights[end - 2 * wide :, end] = weights[end, end - 2 * wide :] = 0.5
+        grid = GridMap("maze", weights)
+        for hands in (LEFT, RIGHT, BOTH):
+            settings = np.array([1, hands, 0, 0, 0, 0, int(asks)])
+            ends, none = (0, 0, end, end), np.empty(1, dtype=np.uint32)
+            whole = walked_path(grid.table, ends, 0, hands, 1 << 40, False, False, none, stream(0))
+            count, walked, path = first_walk(grid.table, ends, 0, settings, stream(0))
+            leaves = asks and wide == 1 and whole[1] > 8 * 2 * (end + 1)
+            assert count == (CROWDED if leaves else whole[0])
+            assert walked == (8 * 2 * (end + 1) if leaves else whole[1])
+            if count > 0:
+                assert unpacked(path[:count]) == unpacked(whole[2][:count])
 
 
 def rerouted(problem, points, hands, seed):

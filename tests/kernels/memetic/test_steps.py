@@ -1,9 +1,14 @@
 """Steps against the rules field by field, and that a hand on the wall comes to all of it."""
 
+import itertools
+
 import naive
+import numpy as np
+import pytest
 from hypothesis import given
 from naive_memetic import STEPS, beside, may, plus, rays, region, walled_problems
 
+from gapath.grid import GridMap
 from gapath.kernels.memetic.steps import STEP_X, STEP_Y, may_step, towards, wall_of, wall_step
 
 
@@ -71,3 +76,21 @@ def test_a_hand_comes_round_and_was_on_all_fields_beside_the_obstacle(problem):
             wall = beside(weights, place, there, name)
             for side in (1, -1):
                 assert wall <= round_the_wall(problem, place, step, side)
+
+
+@pytest.mark.parametrize("name", ["allow", "one_side", "forbid", "no_diagonals"])
+def test_a_wall_is_what_blocks_the_step_or_beside_it_the_corner_that_does(name):
+    """All surroundings of a field; of two corners the first counterclockwise."""
+    rule = ["allow", "one_side", "forbid", "no_diagonals"].index(name)
+    for walls in itertools.product([0.5, 1.0], repeat=8):
+        weights = np.full((3, 3), 0.5)
+        for (dx, dy), weight in zip(STEPS, walls, strict=True):
+            weights[1 + dy, 1 + dx] = weight
+        table = GridMap("around", weights).table
+        for (k, step), side in itertools.product(enumerate(STEPS), (1, -1)):
+            corners = [i % 8 for i in (k - 1, k + 1) if walls[i % 8] == 1]
+            if name == "allow" or k % 2 == 0:
+                expected = k
+            else:
+                expected = corners[0] if corners else (k - side) % 8
+            assert wall_of(table, 1, 1, *step, side, rule) == expected
