@@ -64,6 +64,21 @@ def test_a_repaired_path_is_free_and_there_is_one_wherever_there_can_be(case):
 
 
 @given(cut_paths())
+def test_what_a_new_path_would_cost_falls_by_the_fields_that_the_robot_left_behind(case):
+    """So much is expected that no new one is looked for."""
+    problem, old, at = case
+    grid, rule, much = problem.map, int(problem.corner_cutting), np.int64(1 << 40)
+    ends = (*problem.start, *problem.target)
+    new, cost, expected = repaired(grid.table, old, at, *ends, rule, 0, much, order_of(grid))
+    if not len(old) or not len(new):
+        return
+    if cost == FREE:
+        assert expected == much
+    else:
+        assert expected == much - grid.table[old[1 : at + 1, 1], old[1 : at + 1, 0]].sum()
+
+
+@given(cut_paths())
 def test_the_end_of_a_path_is_free_from_behind_its_cuts(case):
     problem, path, at = case
     if not len(path):

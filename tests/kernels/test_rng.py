@@ -23,6 +23,10 @@ def test_words_equal_numpy(seed, trial, call):
     assert words.tolist() == [oracle.take() for _ in range(50)]
 
 
+def test_the_first_call_of_the_first_trial_is_meant_if_none_is_named():
+    assert rng.stream(7).tolist() == rng.stream(7, 0).tolist() == rng.stream(7, 0, 0).tolist()
+
+
 @given(word, st.integers(1, 2**31 - 1))
 def test_bounded_integers_by_their_definition(value, n):
     assert rng.high(np.uint64(value), n) == naive.high(value, n)

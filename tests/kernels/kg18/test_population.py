@@ -67,6 +67,13 @@ def test_the_last_third_lies_all_over_the_map_but_for_its_margin():
     assert points.reshape(-1, 2).max(axis=0).tolist() == [COLS - 5, ROWS - 5]
 
 
+def test_a_margin_leaves_the_middle_of_the_map_at_least():
+    """Of an even number of fields two."""
+    points = initial(3000, margin=30)[2000:]
+    assert points.reshape(-1, 2).min(axis=0).tolist() == [30, 24]
+    assert points.reshape(-1, 2).max(axis=0).tolist() == [COLS - 31, 25]
+
+
 @given(st.lists(st.integers(0, 9), min_size=4, max_size=60), st.data())
 def test_rank_selection_is_a_stable_sort(keys, data):
     best = np.empty(data.draw(st.integers(1, len(keys))), dtype=np.int64)
@@ -100,6 +107,8 @@ def children(way, parents, genes, mixing=EVEN, probability=0.0, half=0, clip=Fal
     drawn = words(genes - 4, seed)
     box = limits(genes, clip)
     vary(way, matrix, 0, 1, mixing, drawn, 0, 0, threshold, changes, box, found, 0, genes)
+    if way is ONE_BY_ONE:  # lanes may reach beyond, to what limits give no choice or nobody reads
+        assert (found[0, [0, 1, *range(genes - 2, found.shape[1])]] == -7).all()
     return found[0, 2 : genes - 2]
 
 

@@ -13,7 +13,9 @@ from strategies import problems
 from gapath.components import build
 from gapath.discovery import yaml_values
 from gapath.grid import GridMap
-from gapath.kernels.rivals.line_costs import IN_THE_WAY, line_cost
+from gapath.kernels.jit import kernel
+from gapath.kernels.rivals import lazy_theta
+from gapath.kernels.rivals.line_costs import FINE, IN_THE_WAY, line_cost
 from gapath.kernels.rng import stream
 from gapath.planning.flaw import flaw
 from gapath.planning.path import octile_length, polyline_length
@@ -34,6 +36,18 @@ def test_lines_cost_what_the_slow_twin_says(problem):
     )
     found = line_cost(problem.map.table, *problem.start, *problem.target, int(rule))
     assert found == (IN_THE_WAY if cost is None else cost)
+
+
+@kernel
+def step_cost(weight, step):
+    return lazy_theta.step_cost(weight, step)
+
+
+@given(st.integers(0, 65536), st.integers(0, 7))
+def test_steps_cost_what_they_are_long_and_a_little_more(weight, step):
+    """A unit at most: 1 + the root, rounded down."""
+    length = (weight + 1) * FINE
+    assert step_cost(weight, step) == 1 + math.isqrt((2 if step > 3 else 1) * length**2)
 
 
 @given(problems(most=16))
