@@ -1,5 +1,7 @@
 """What stands for what when kernels are changed, place by place."""
 
+import types
+
 import mutants
 import pytest
 
@@ -41,3 +43,16 @@ def test_each_tree_differs_in_one_place_and_the_last_is_as_it_was():
     assert trees[0].startswith("A = 2\n") and trees[1].startswith("A = 0\n")
     assert "while a >= A" in trees[2] and "while a <= A" in trees[3] and "continue" in trees[4]
     assert len(trees) == 5 and all(tree.count("\n") == trees[0].count("\n") for tree in trees)
+
+
+def test_a_function_whose_results_are_kept_is_changed_for_those_who_have_it():
+    text = "from functools import cache\n\n@cache\ndef f() -> int:\n    return 5\n"
+    module = types.ModuleType("kept")
+    module.__file__ = "kept.py"
+    mutants.Loader(compile(text, "kept.py", "exec")).exec_module(module)
+    function, found = module.f, []
+    assert function() == 5
+    for *_, tree in mutants.mutants(text):
+        mutants.replace(module, tree)
+        found.append(function())
+    assert found == [6, 6, 4]
