@@ -1,5 +1,6 @@
 """The memetic algorithm: what it tells adds up, and no individual ever becomes dearer."""
 
+import itertools
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -48,7 +49,7 @@ from gapath.kernels.memetic.population import (
 )
 from gapath.kernels.memetic.rerouting import Room
 from gapath.kernels.memetic.walls import BOTH, LEFT, NO_WAY, RIGHT
-from gapath.kernels.rng import probability_threshold, stream
+from gapath.kernels.rng import fill, probability_threshold, stream
 from gapath.problem import CornerCutting
 
 
@@ -203,6 +204,30 @@ def test_each_pair_is_crossed_though_chance_hardly_has_it_but_not_where_it_never
 @kernel
 def crossover(table, row, other, rule, lower, members, room):
     return evolution.crossover(table, row, other, rule, lower, members, room)
+
+
+@kernel
+def pairs(n, words, turns, draws):
+    for k in range(len(turns)):
+        turns[k, 0], turns[k, 1] = evolution.pair(k, n)
+    for k in range(len(draws)):
+        draws[k, 0], draws[k, 1] = evolution.drawn_pair(words[k], n)
+
+
+@pytest.mark.parametrize("n", range(2, 9))
+def test_pairs_in_turn_and_by_chance(n):
+    """In turn all unordered ones; by chance an individual, and any other one."""
+    in_turn = list(itertools.combinations(range(n), 2))
+    words = np.empty(900, dtype=np.uint64)
+    fill(stream(n), words)
+    words = words.reshape(300, 3)
+    turns, draws = (np.empty((k, 2), dtype=np.int64) for k in (len(in_turn), len(words)))
+    pairs(n, words, turns, draws)
+    assert places(turns) == in_turn
+    assert set(places(draws)) == set(itertools.permutations(range(n), 2))
+    for (one, other), (_, a, b) in zip(places(draws), words.tolist(), strict=True):
+        rest = [k for k in range(n) if k != one]
+        assert (one, other) == (naive.high(a, n), rest[naive.high(b, n - 1)])
 
 
 @given(slow.two_polygons())
