@@ -101,6 +101,16 @@ def test_vertices_may_come_to_any_field_and_to_each_border(kind):
     assert seen == {(x, y) for x in range(6) for y in range(4)}
 
 
+@given(st.tuples(WORD, WORD, WORD, WORD))
+def test_a_vertex_moves_from_where_it_is_along_both_axes_or_one(drawn):
+    """On a map of 50 fields by 50: by less than 32."""
+    points, new = vertices([(2, 1), (40, 7), (4, 1)]), np.empty((2, 2), dtype=np.int32)
+    propose(MOVE, points, 3, 50, 50, np.array(drawn, dtype=np.uint64), new)
+    (x, y), along = new[0].tolist(), naive.low(drawn[0], 3)
+    assert x == 40 if along == 1 else 40 - 32 < x <= 49
+    assert y == 7 if along == 2 else 0 <= y < 7 + 32
+
+
 @given(proposals())
 def test_what_is_replaced_is_free_and_never_dearer(drawn):
     problem, points, _, i, j, new = drawn
