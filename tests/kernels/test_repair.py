@@ -63,19 +63,17 @@ def test_a_repaired_path_is_free_and_there_is_one_wherever_there_can_be(case):
             assert remaining_cost(grid.table, new, 0, rule) == cost
 
 
-@given(cut_paths())
-def test_what_a_new_path_would_cost_falls_by_the_fields_that_the_robot_left_behind(case):
+@pytest.mark.parametrize("at", [0, 1, 5, 18])
+def test_what_a_new_path_would_cost_falls_by_the_fields_that_the_robot_left_behind(at):
     """So much is expected that no new one is looked for."""
-    problem, old, at = case
-    grid, rule, much = problem.map, int(problem.corner_cutting), np.int64(1 << 40)
-    ends = (*problem.start, *problem.target)
-    new, cost, expected = repaired(grid.table, old, at, *ends, rule, 0, much, order_of(grid))
-    if not len(old) or not len(new):
-        return
-    if cost == FREE:
-        assert expected == much
-    else:
-        assert expected == much - grid.table[old[1 : at + 1, 1], old[1 : at + 1, 0]].sum()
+    weights = np.random.default_rng(at).integers(1, 60, (9, 30)) / 64
+    path = np.stack([np.arange(30), np.full(30, 4)], axis=1).astype(np.int32)
+    for cut in (False, True):
+        weights[2:7, 20] = 1.0 if cut else 0.5
+        grid, much = GridMap("cut", weights), np.int64(1 << 40)
+        _, cost, expected = repaired(grid.table, path, at, at, 4, 29, 4, 0, 0, much, order_of(grid))
+        assert (cost == FREE) != cut
+        assert expected == much - cut * grid.table[4, 1 : at + 1].sum()
 
 
 @given(cut_paths())
