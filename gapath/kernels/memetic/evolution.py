@@ -237,7 +237,7 @@ def crossover(
     members: Individuals,
     room: Room,
 ) -> tuple[int, int, int, Individuals, Room]:
-    """Cross two individuals; the child takes the dearer one's place if it is cheaper.
+    """Cross two individuals; the child takes the cheaper one's place if it is cheaper still.
 
     Gives which that is, what it became cheaper by, the fields that were read, population and room.
     """
