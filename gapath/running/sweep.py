@@ -96,11 +96,11 @@ def _line(content: dict[str, object]) -> bytes:
     return json.dumps({"at": time.time(), **content}).encode() + b"\n"
 
 
-def _count(value: object) -> int:
+def _bounded(value: object) -> float:
     """Read a number of jobs or trials, an exit code or a time in seconds."""
     if not isinstance(value, int | float) or not 0 <= value <= 1 << 53:
         raise ValueError(value)
-    return int(value)
+    return value
 
 
 def host() -> str:
@@ -130,8 +130,7 @@ class Standing:
     jobs: int = 0
     whole: int = 0
     folders: list[str] = field(default_factory=list)
-    began: int = 0
-    """Seconds since 1970."""
+    began: float = 0.0
     running: dict[int, str] = field(default_factory=dict)
     """Jobs under way: number -> words."""
     codes: dict[int, int] = field(default_factory=dict)
@@ -166,15 +165,15 @@ class Standing:
 
     def _take(self, line: dict[str, Any], said: list[tuple[str, str]]) -> None:
         if "command" in line:
-            jobs, whole, began = _count(line["jobs"]), _count(line["whole"]), _count(line["at"])
+            jobs, whole, began = (_bounded(line[name]) for name in ("jobs", "whole", "at"))
             folders = [str(name) for name in line["folders"]]
             self.command, self.folders = str(line["command"]), folders
             self.began = self.began or began  # more jobs may be told later
-            self.jobs, self.whole = jobs, min(whole, jobs)
+            self.jobs, self.whole = int(jobs), int(min(whole, jobs))
         elif "begun" in line:
-            self.running[_count(line["begun"])] = " ".join(map(str, line["words"]))
+            self.running[int(_bounded(line["begun"]))] = " ".join(map(str, line["words"]))
         elif "ended" in line:
-            number, code, trials = (_count(line[name]) for name in ("ended", "code", "trials"))
+            number, code, trials = (int(_bounded(line[n])) for n in ("ended", "code", "trials"))
             self.running.pop(number, None)
             self.codes[number] = code
             self.trials += trials
