@@ -1,5 +1,7 @@
 """Trials cut into shards: the rows of all, one in every table, and logs that can be checked."""
 
+import json
+
 import pyarrow.parquet as pq
 import pytest
 from hypothesis import given
@@ -10,6 +12,7 @@ from gapath.commands import run as cli
 from gapath.errors import InputError
 from gapath.pipelines.reading.collect import read_trials
 from gapath.pipelines.reading.counted import incomplete
+from gapath.pipelines.report import cli as report_command
 from gapath.running.shards import span
 from gapath.store.records import find_runs
 from gapath.task import columns, find_task
@@ -63,6 +66,21 @@ def test_shards_come_to_the_rows_of_the_whole_and_count_once(gapath, tmp_path, s
     assert (len(collected.trials[task]), collected.skipped, incomplete(runs)) == (7, [], [])
     log = next(run for run in runs if run.settings["shard"] == 2).folder / "run.mcap"
     assert log_command.main(["verify", str(log)]) == 0
+
+
+def test_groups_pool_the_trials_of_shards(gapath, tmp_path, capfd):
+    sweep = ("-m", "map=kg18_test3", "planner=ga1,ga2", "trials=40", "recorder=none")
+    assert gapath(*sweep, output=tmp_path / "whole")[0] == 0
+    assert gapath(*sweep, "shards=4", "shard=range(4)", output=tmp_path / "cut")[0] == 0
+    capfd.readouterr()
+    names, told = ("success", "success_low", "success_high", "expected_evaluations"), []
+    for name, runs in (("whole", 1), ("cut", 4)):
+        asked = ["runs", str(tmp_path / name), "--group", "preset", "--json"]
+        assert report_command.main(asked) == 0
+        rows = json.loads(capfd.readouterr().out)
+        assert [(row.pop("runs"), row["trials"]) for row in rows] == [(runs, 40)] * 2
+        told.append([[row[name] for name in names] for row in rows])
+    assert told[0] == told[1] and 0 < told[0][0][0] < 1
 
 
 def test_of_shards_and_a_whole_run_one_counts(gapath, tmp_path):
