@@ -34,6 +34,10 @@ MOST_NODES, DEEPEST = 10_000, 32
 LONGEST_WHOLE = 400
 """Characters of a whole number; Python refuses to show one of 4300 digits."""
 
+_WHOLE = re.compile(r"[-+]?[0-9][0-9a-fA-FxobXOB_:]*")
+"""Whatever YAML takes for a whole number, and words that begin like one."""
+_INT = "tag:yaml.org,2002:int"
+
 _STEP = re.compile(r"\[(\d{0,9})\]|\.?([^.\[\]]+)|\.$")
 
 
@@ -269,7 +273,7 @@ def plain_yaml(given: str | Path, where: str, expected: str) -> Any:
         size = len(text)
         require(size <= MAX_YAML_BYTES, where, f"{size} characters", f"at most {MAX_YAML_BYTES}")
         _check_bounds(text, where)
-        return yaml.load(text, _Plain)  # noqa: S506 - a SafeLoader
+        return yaml.safe_load(text)
     except InputError:
         raise
     except OSError as error:
@@ -277,20 +281,6 @@ def plain_yaml(given: str | Path, where: str, expected: str) -> Any:
     except (yaml.YAMLError, ValueError, OverflowError, TypeError, AttributeError) as error:
         reason = " ".join(str(error).split("\n")[0].split())
         raise InputError(where, f"text that is no YAML ({reason})", expected) from error
-
-
-class _Plain(yaml.SafeLoader):
-    """Makes plain data, and only whole numbers that can be shown again, in messages."""
-
-    def construct_yaml_int(self, node: yaml.ScalarNode) -> int:
-        """Make a whole number."""
-        size = len(node.value)
-        if size > LONGEST_WHOLE:
-            raise yaml.YAMLError(f"a whole number of {size} characters")
-        return super().construct_yaml_int(node)
-
-
-_Plain.add_constructor("tag:yaml.org,2002:int", _Plain.construct_yaml_int)
 
 
 def _text_of_file(path: Path, where: str, expected: str) -> str:
@@ -318,6 +308,10 @@ def _check_bounds(text: str, where: str) -> None:
                 within.append((event.anchor, count))
             elif event.anchor:
                 sizes[event.anchor] = 1
+            if isinstance(event, yaml.ScalarEvent) and len(event.value) > LONGEST_WHOLE:
+                plain = event.implicit[0] and _WHOLE.fullmatch(event.value)  # no quoted text
+                if plain or event.tag == _INT:
+                    raise yaml.YAMLError(f"a whole number of {len(event.value)} characters")
             count += 1
         most = f"at most {MOST_NODES} values, each alias counted as what it stands for"
         require(count <= MOST_NODES, where, "too many values", most)

@@ -122,3 +122,11 @@ def test_whole_numbers_that_nobody_could_show_are_refused(number):
         plain_yaml(f"a: [&b {number}, *b]", "a.yaml", "a YAML")
     shown = plain_yaml(f"a: {number[:399]}", "a.yaml", "a YAML")
     assert len(str(shown)) < 1000
+
+
+def test_whole_numbers_may_be_tagged_and_long_text_may_be_of_digits():
+    for number in ("9" * 401, "0x " + "9" * 5000):
+        with pytest.raises(InputError, match=r"a whole number of \d+ characters"):
+            plain_yaml(f"a: !!int '{number}'", "a.yaml", "a YAML")
+    for text in (f"'{'9' * 5000}'", f"!!str {'9' * 5000}", "deadbeef" * 99):
+        assert isinstance(plain_yaml(f"a: {text}", "a.yaml", "a YAML")["a"], str)
