@@ -1,5 +1,6 @@
 """Helpers that every test may use."""
 
+import contextlib
 import os
 import sys
 from pathlib import Path
@@ -44,6 +45,29 @@ def gapath(monkeypatch, capfd, tmp_path):
 
     monkeypatch.chdir(tmp_path)
     return call
+
+
+@pytest.fixture
+def failing_after(monkeypatch):
+    """Within the context, fail when so many trials are in a run's journal."""
+
+    @contextlib.contextmanager
+    def context(trials):
+        from gapath.running import progress  # as above
+
+        add, left = progress.Journal.add, [trials]
+
+        def last(journal, trial):
+            add(journal, trial)
+            left[0] -= 1
+            if not left[0]:
+                raise RuntimeError("cut short")
+
+        with monkeypatch.context() as patch:
+            patch.setattr(progress.Journal, "add", last)
+            yield
+
+    return context
 
 
 def pytest_addoption(parser):

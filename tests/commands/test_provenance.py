@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 
 from gapath.commands import asker
-from gapath.running import progress
 from gapath.store.provenance import origin
 from gapath.store.provenance.git import Tree
 
@@ -94,18 +93,9 @@ def test_code_that_is_edited_while_a_sweep_runs_is_noticed_by_the_next_job(
     assert [each[: len(line)] for each in errors.splitlines()] == [line] * 2
 
 
-def test_a_run_that_goes_on_says_how_many_trials_it_took_up(gapath, tmp_path, monkeypatch):
+def test_a_run_that_goes_on_says_how_many_trials_it_took_up(gapath, tmp_path, failing_after):
     run = [*RUN, "trials=5", "recorder=none"]
-    add, left = progress.Journal.add, [3]
-
-    def last(journal, trial):
-        add(journal, trial)
-        left[0] -= 1
-        if not left[0]:
-            raise RuntimeError("cut short")
-
-    with monkeypatch.context() as patch:
-        patch.setattr(progress.Journal, "add", last)
+    with failing_after(3):
         assert gapath(*run)[0] == 1
     (cut,) = manifests(tmp_path)
     assert cut["provenance"]["machine"] and "spent" not in cut["provenance"]

@@ -89,20 +89,9 @@ def test_of_shards_and_a_whole_run_one_counts(gapath, tmp_path):
     assert len(read_trials(find_runs(tmp_path / "out")).trials["plan"]) == 6
 
 
-def test_a_shard_that_was_cut_short_goes_on(gapath, tmp_path, monkeypatch):
+def test_a_shard_that_was_cut_short_goes_on(gapath, tmp_path, failing_after):
     words = [*GENETIC, "trials=9", "shards=3", "shard=1", "recorder=mcap"]
-    from gapath.running import progress
-
-    add, left = progress.Journal.add, [2]
-
-    def last(journal, trial):
-        add(journal, trial)
-        left[0] -= 1
-        if not left[0]:
-            raise RuntimeError("cut short")
-
-    with monkeypatch.context() as patch:
-        patch.setattr(progress.Journal, "add", last)
+    with failing_after(2):
         assert gapath(*words)[0] == 1
     code, _, errors = gapath(*words)
     assert (code, "goes on after trial 4, 2 of 3 are done" in errors) == (0, True)
