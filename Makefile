@@ -17,7 +17,7 @@ OWN := drive_choices s04_sweep tune
 OTHERS := $(filter-out $(TIMED) $(OWN),$(basename $(notdir $(wildcard conf/experiment/*.yaml))))
 
 .PHONY: paper
-paper: $(VENV)/ready ## do every published experiment and build the report (about ten minutes)
+paper: $(VENV)/ready ## do every published experiment and build the report (ten to fifteen minutes)
 	@for name in $(TIMED); do \
 	  echo "experiment $$name"; $(BIN)/gapath experiment=$$name output="$(OUTPUT)" || exit $$?; \
 	done
@@ -136,7 +136,7 @@ $(VENV)/ready: requirements.lock pyproject.toml
 	  echo "gapath needs Python 3.11, 3.12 or 3.13 with its venv module (Debian: python3-venv)." >&2; \
 	  echo "Tried: $(PYTHONS). Name another one: make PYTHON=/path/to/python ..." >&2; exit 2; \
 	fi; \
-	echo "making $(VENV) with $$($$found --version), about a minute"; \
+	echo "making $(VENV) with $$($$found --version), about two minutes"; \
 	rm -rf $(VENV); $$found -m venv $(VENV); \
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --use-pep517 -r requirements.lock; \
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .; \
