@@ -44,8 +44,9 @@ def _shaped(hint: "_Hint", content: Any, where: str) -> Any:
     require(isinstance(content, dict), where, content, "a mapping")
     inner = hint.parts.get(_ITEMS)
     if inner is not None:
-        if inner.shape is None and set(map(type, content.values())).issubset(inner.plain):
-            return content
+        types = set(map(type, content.values()))
+        if inner.shape is None and types.issubset(inner.plain):
+            return _texts(tuple(content.items())) if types == {str} else content
         return {n: _shaped(inner, item, f"{where}, {n}") for n, item in content.items()}
     made = {}
     for name, part in hint.parts.items():
@@ -53,6 +54,12 @@ def _shaped(hint: "_Hint", content: Any, where: str) -> Any:
         if type(value) not in part.plain:
             made[name] = _shaped(part, value, f"{where}, {name}")
     return hint.shape(**made)
+
+
+@lru_cache(maxsize=256)
+def _texts(items: tuple[tuple[str, str], ...]) -> Mapping[str, str]:
+    """Give one mapping for all that are equal: ten thousand manifests name the same packages."""
+    return dict(items)
 
 
 _ITEMS = ""
