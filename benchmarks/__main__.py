@@ -39,6 +39,7 @@ _PLACES = (
     "field.field_ablation",
     "asking",
     "cold_start",
+    "engines",
 )
 
 QUESTIONS = {place.rpartition(".")[2]: place for place in _PLACES}
