@@ -3,13 +3,14 @@
 import re
 import tomllib
 from decimal import Decimal
+from itertools import zip_longest
 from pathlib import Path
 from typing import NamedTuple
 
 import duckdb
 
 ROOT = Path(__file__).parents[2]
-RESULTS = "docs/results"
+RESULTS, BENCH = "docs/results", "bench"
 
 _SHOWN = r"(?:[<>] )?-?\d+(?:[ \u202f]\d{3}(?!\d))*(?:\.\d+)?|∞"
 _HOLES = {
@@ -28,10 +29,16 @@ create macro rate(p, n, digits) as
     [percent(p), plain(round(100 * low(p, n), digits)), plain(round(100 * high(p, n), digits))];
 create macro significant(x, n) as case when isinf(x) then '∞' when x = 0 then '0'
     else plain(round(x, n - 1 - floor(log10(abs(x)))::int)) end;
+create macro short(x) as case when abs(x) >= 999.5
+    then replace(format('{:,}', round(x)::bigint), ',', ' ') else significant(x, 3) end;
+create macro brief(x) as short(significant(x, 2)::double);
+create macro quartiles(x, lower, upper) as
+    coalesce(format('{} [{}, {}]', short(x), short(lower), short(upper)), '');
 """
 """What queries may use beside DuckDB's own: Wilson's 95 % interval of a rate p of n, and text as
 `gapath.pipelines.numbers.text` writes it: a rate in percent, with both ends of its interval or
-without, a number of n significant digits."""
+without, a number of n significant digits, of three or two or else
+a whole one, and one with its quartiles."""
 
 
 class Bound(NamedTuple):
@@ -48,6 +55,19 @@ class Bound(NamedTuple):
         parts = re.split(r"(\{\??\})", self.text.strip())
         pattern = "".join(_HOLES.get(part) or _anyhow_broken(part) for part in parts)
         return list(re.finditer(pattern, pages[self.where]))
+
+
+class Table(NamedTuple):
+    """A table of a page, all of whose rows below the head are what a query gives, cells as text."""
+
+    where: str
+    head: str
+    query: str
+
+    def found(self, pages):
+        """Give the places of its rows in its page."""
+        rows = rf"(?m:^){re.escape(self.head.strip())}\n\|[-| :]+\|\n((?:\|.*\|(?:\n|\Z))+)"
+        return list(re.finditer(rows, pages[self.where]))
 
 
 def _anyhow_broken(text):
@@ -74,7 +94,7 @@ def read():
     found = tomllib.loads((ROOT / "docs" / "numbers.toml").read_text("utf-8"))
     whole = found["whole"]
     bound = [
-        Bound(page, **each)
+        (Table if "head" in each else Bound)(page, **each)
         for page, entries in found.items()
         if page != "whole"
         for each in entries
@@ -89,12 +109,18 @@ def read_pages(bound, whole):
 
 
 def tables(*folders):
-    """Open the tables of results: each CSV under its name, of the last folder that has it."""
-    found = {path.stem: path for folder in folders for path in sorted(folder.glob("*.csv"))}
+    """Open the tables of results: each CSV under its name, of the last folder that has it.
+
+    Those of benchmarks are in a schema of their own, ``bench``.
+    """
     connection = duckdb.connect()
     connection.execute(_MACROS)
-    for name, path in found.items():
-        connection.execute(f"create table {name} as from read_csv('{path}', sample_size = -1)")
+    connection.execute(f"create schema {BENCH}")
+    for folder in folders:
+        for schema, place in ("main", folder), (BENCH, folder / BENCH):
+            for path in sorted(place.glob("*.csv")):
+                made = f"from read_csv('{path}', sample_size = -1)"
+                connection.execute(f"create or replace table {schema}.{path.stem} as {made}")
     return connection
 
 
@@ -107,14 +133,31 @@ def _faults(each, pages, connection):
     page, places = pages[each.where], each.found(pages)
     line = page.count("\n", 0, places[0].start()) + 1 if places else 0
     if len(places) != 1:
-        yield Fault(each.where, line, f"{len(places)} times, not once: {each.text.strip()}")
+        text = each.head if isinstance(each, Table) else each.text
+        yield Fault(each.where, line, f"{len(places)} times, not once: {text.strip()}")
         return
-    (place,) = places
     try:
-        values = list(_flat(connection.execute(each.query).fetchall()))
+        rows = connection.execute(each.query).fetchall()
     except duckdb.Error as error:
         yield Fault(each.where, line, f"{error}: {each.query.strip()}")
         return
+    if isinstance(each, Table):
+        yield from _of_table(each, places[0], line, rows)
+    else:
+        yield from _of_text(each, places[0], line, rows, page)
+
+
+def _of_table(each, place, line, rows):
+    made = [f"| {' | '.join('' if cell is None else str(cell) for cell in row)} |" for row in rows]
+    shown = place[1].splitlines()
+    if shown != made:
+        said = [f"{a} -> {b}" for a, b in zip_longest(shown, made, fillvalue="no row") if a != b]
+        new = "\n".join([*made, ""]) if made else None
+        yield Fault(each.where, line, "\n".join(said), place.start(1), place[1], new)
+
+
+def _of_text(each, place, line, rows, page):
+    values = list(_flat(rows))
     if len(values) != len(place.groups()) or None in values:
         said = f"{values} for {len(place.groups())} numbers: {each.query.strip()}"
         yield Fault(each.where, line, said)
@@ -139,7 +182,7 @@ def agrees(shown, value):
     """Tell whether a number is what a query gave: text as it is, else to the digits shown."""
     digits = _plain(shown)
     if isinstance(value, str):
-        return digits == value
+        return digits == _plain(value)
     if not re.fullmatch(r"-?[\d.]+", digits):
         return False
     unit = Decimal(10) ** -_decimals(digits)
@@ -148,7 +191,7 @@ def agrees(shown, value):
 
 def written(shown, value):
     """Write a new value as the old one was: its decimals, and its space between thousands."""
-    text = value if isinstance(value, str) else f"{value:.{_decimals(_plain(shown))}f}"
+    text = _plain(value) if isinstance(value, str) else f"{value:.{_decimals(_plain(shown))}f}"
     whole, dot, rest = text.partition(".")
     if whole.isdigit() and (len(whole) > 4 or _plain(shown) != shown):
         whole = f"{int(whole):,}".replace(",", " ")
@@ -168,7 +211,8 @@ def unbound(whole, bound, pages):
     known = {name: [] for name in pages}
     for each in bound:
         for place in each.found(pages):
-            known[each.where] += [place.span()] if each.given else place.regs[1:]
+            wholly = isinstance(each, Bound) and each.given
+            known[each.where] += [place.span()] if wholly else place.regs[1:]
     for name in whole:
         page, _, heading = name.partition("#")
         section = _section(pages[page], heading)

@@ -2,6 +2,7 @@
 
 import argparse
 import re
+import shutil
 import sys
 import tempfile
 from pathlib import Path
@@ -11,7 +12,10 @@ import bound
 from gapath.pipelines.asking.answer import write_csv
 from gapath.pipelines.asking.sql import asked
 from gapath.pipelines.reading.frame import described
-from gapath.store.records import find_runs
+from gapath.store.records import MANIFEST, find_runs
+
+LAST = "questions.csv"
+"""What `python -m benchmarks` writes when it has answered all that it was asked."""
 
 
 def asked_anew(outputs, folder):
@@ -33,10 +37,19 @@ def asked_anew(outputs, folder):
             write_csv(answer, file)
 
 
+def measured_anew(outputs, folder):
+    """Copy what `make bench` measured; tells whether it answered all of its questions."""
+    if not (outputs / bound.BENCH / LAST).is_file():
+        print(f"{bound.BENCH}: no results, left as they are")
+        return False
+    shutil.copytree(outputs / bound.BENCH, folder / bound.BENCH)
+    (folder / bound.BENCH / "README.md").unlink()
+    return True
+
+
 def accept(folder, pages, wrong):
     """Take new tables, and write their numbers into the pages."""
-    for table in folder.glob("*.csv"):
-        (bound.ROOT / bound.RESULTS / table.name).write_bytes(table.read_bytes())
+    shutil.copytree(folder, bound.ROOT / bound.RESULTS, dirs_exist_ok=True)
     for fault in sorted(wrong, key=lambda fault: fault.start, reverse=True):
         if fault.value is not None:
             page, end = pages[fault.where], fault.start + len(fault.shown)
@@ -55,9 +68,10 @@ def main():
     pages = bound.read_pages(numbers, whole)
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
-        asked_anew(given.outputs, folder)
+        if not measured_anew(given.outputs, folder) or any(given.outputs.glob(f"*/*/{MANIFEST}")):
+            asked_anew(given.outputs, folder)
         if given.accept is not None and "all" not in given.accept:
-            for table in folder.glob("*.csv"):
+            for table in folder.rglob("*.csv"):
                 if table.stem not in given.accept:
                     table.unlink()
         wrong = bound.faults(numbers, pages, bound.tables(bound.ROOT / bound.RESULTS, folder))

@@ -3,17 +3,20 @@
 import csv
 import re
 import sys
+from pathlib import Path
 
 import bound
 import pytest
 import renew
 
+from benchmarks.__main__ import INDEX, QUESTIONS
 from gapath.pipelines.numbers.statistics import wilson
 from gapath.pipelines.numbers.text import percent
 
 RESULTS = bound.ROOT / bound.RESULTS
 BOUND, WHOLE = bound.read()
 PAGES = bound.read_pages(BOUND, WHOLE)
+TABLES = [each for each in BOUND if isinstance(each, bound.Table)]
 
 
 @pytest.fixture(scope="module")
@@ -32,13 +35,28 @@ def test_sections_that_are_bound_wholly_have_no_other_number_in_a_table():
 
 def test_each_number_that_is_another_is_noticed(connection):
     for name, page in PAGES.items():
-        mine = [each for each in BOUND if each.where == name]
+        mine = [each for each in BOUND if each.where == name and isinstance(each, bound.Bound)]
         places = sorted(span for each in mine for span in each.found(PAGES)[0].regs[1:])
         shown = [page[start:end] for start, end in places]
         for start, end in reversed(places):
             page = page[:start] + other(page[start:end]) + page[end:]
         wrong = bound.faults(mine, {name: page}, connection)
         assert sorted(bound._plain(f.value) for f in wrong) == sorted(map(bound._plain, shown))
+
+
+@pytest.mark.parametrize("table", TABLES, ids=lambda table: f"{table.where} {table.head}")
+def test_each_row_of_a_table_that_is_another_is_noticed(table, connection):
+    page = PAGES[table.where]
+    (place,) = table.found(PAGES)
+    rows = place[1].splitlines(keepends=True)
+    for i, row in enumerate(rows):
+        number = re.search(r"\d(?=\D*$)", row)
+        changed = row[: number.start()] + other(number[0]) + row[number.end() :] if number else ""
+        altered = "".join([*rows[:i], changed, *rows[i + 1 :]])
+        altered_page = page[: place.start(1)] + altered + page[place.end(1) :]
+        (fault,) = bound.faults([table], {table.where: altered_page}, connection)
+        assert fault.value == place[1]
+        assert row.strip() in fault.said
 
 
 def other(shown):
@@ -94,6 +112,24 @@ def test_a_table_with_a_number_of_nobodys_is_noticed():
     assert list(bound.unbound(["p#one"], [each, given], {"p": page})) == []
 
 
+@pytest.mark.parametrize(
+    ("page", "query", "says"),
+    [
+        ("| a | b |\n| --- | --- |\n| 1 | 2 |\n", "select 1, 2", ""),
+        ("| a | b |\n| --- | --- |\n| 1 |  |\n", "select 1, null", ""),
+        ("| a | b |\n| --- | --- |\n| 1 | 2 |\n", "select 1, 3", "| 1 | 2 | -> | 1 | 3 |"),
+        ("| a | b |\n| --- | --- |\n| 1 | 2 |\n", "select 1, 2 where false", "-> no row"),
+        ("| a | b |\n| --- | --- |\n| 1 | 2 |\n", "values (1, 2), (3, 4)", "no row -> | 3 | 4 |"),
+        ("| a | b |\n| --- | --- |\n", "select 1, 2", "0 times, not once"),
+        ("| a | c |\n| --- | --- |\n| 1 | 2 |\n", "select 1, 2", "0 times, not once"),
+    ],
+)
+def test_a_table_is_what_its_query_gives(page, query, says, connection):
+    table = bound.Table("p", "| a | b |", query)
+    wrong = bound.faults([table], {"p": f"Text.\n\n{page}\nText.\n"}, connection)
+    assert says in wrong[0].said if says else not wrong
+
+
 @pytest.mark.parametrize("of", [(0, 20), (7, 20), (1, 3000), (2999, 3000), (20, 20)])
 def test_what_queries_may_use_is_what_reports_use(of, connection):
     rate, n = of[0] / of[1], of[1]
@@ -117,11 +153,17 @@ def test_every_table_has_a_question_that_makes_it_and_leads_to_its_runs():
     assert questions == {path.stem for path in RESULTS.glob("*.csv")}
     for name in questions:
         text = (RESULTS / f"{name}.sql").read_text("utf-8")
-        assert re.match(r"-- .*(gapath experiment=|make )", text), name
+        assert re.match(r"-- .*(gapath experiment=|gapath -m |make )", text), name
         columns = (RESULTS / f"{name}.csv").read_text("utf-8").partition("\n")[0].split(",")
         elsewhere = re.search(r"whose runs (\w+)\.csv has", text)
         assert {"key", "keys"} & set(columns) or elsewhere[1] in questions, name
-    assert sum(path.stat().st_size for path in RESULTS.glob("*.csv")) < 500_000
+    assert sum(path.stat().st_size for path in RESULTS.rglob("*.csv")) < 500_000
+
+
+def test_the_tables_of_benchmarks_are_of_one_whole_run():
+    made = {path.stem for path in (RESULTS / bound.BENCH).glob("*.csv")}
+    assert made == {*QUESTIONS, "targets", "machine", Path(INDEX).stem}
+    assert INDEX == renew.LAST
 
 
 def test_new_runs_are_held_against_the_pages_and_accepted(gapath, tmp_path, monkeypatch, capfd):
@@ -143,9 +185,37 @@ def test_new_runs_are_held_against_the_pages_and_accepted(gapath, tmp_path, monk
             renew.main()
         return stop.value.code, capfd.readouterr().out.splitlines()
 
-    assert said() == (1, ["page.md:1: 2 -> 3 in Of 2 trials.", "1 numbers changed"])
-    assert said("--accept", "other")[1] == ["0 numbers changed, and are written"]
+    none = "bench: no results, left as they are"
+    assert said() == (1, [none, "page.md:1: 2 -> 3 in Of 2 trials.", "1 numbers changed"])
+    assert said("--accept", "other")[1] == [none, "0 numbers changed, and are written"]
     assert page.read_text() == "Of 2 trials."
     assert said("--accept", "mine")[0] == 0
     assert page.read_text() == "Of 3 trials."
-    assert said() == (0, ["0 numbers changed"])
+    assert said() == (0, [none, "0 numbers changed"])
+
+
+def test_what_was_measured_anew_is_held_against_the_pages_and_accepted(
+    tmp_path, monkeypatch, capfd
+):
+    results, page = tmp_path / bound.RESULTS, tmp_path / "page.md"
+    for folder, seconds in (results / "bench", 5), (tmp_path / "out" / "bench", 6):
+        folder.mkdir(parents=True)
+        (folder / "start.csv").write_text(f"what,seconds\nit,{seconds}\n")
+        for name in (INDEX, "README.md"):
+            (folder / name).write_text("question\n")
+    page.write_text("| what | s |\n| --- | --- |\n| it | 5 |\n")
+    results.with_name("numbers.toml").write_text(
+        'whole = []\n[["page.md"]]\nhead = "| what | s |"\nquery = "from bench.start"\n'
+    )
+    monkeypatch.setattr(bound, "ROOT", tmp_path)
+    for words, code, said in (
+        ([], 1, "page.md:1: | it | 5 | -> | it | 6 |"),
+        (["--accept", "start"], 0, "1 numbers changed, and are written"),
+        ([], 0, "0 numbers changed"),
+    ):
+        monkeypatch.setattr(sys, "argv", ["renew.py", str(tmp_path / "out"), *words])
+        with pytest.raises(SystemExit) as stop:
+            renew.main()
+        assert stop.value.code == code
+        assert said in capfd.readouterr().out
+    assert page.read_text().endswith("| it | 6 |\n")

@@ -39,7 +39,11 @@ def test_values_keep_their_types(value):
 
 @pytest.mark.parametrize(
     ("packages", "spent", "says"),
-    [({"a": 1}, {}, "file, packages, a"), ({}, {"a": None}, "file, spent, a"), (3, {}, "a mapping")],
+    [
+        ({"a": 1}, {}, "file, packages, a"),
+        ({}, {"a": None}, "file, spent, a"),
+        (3, {}, "a mapping"),
+    ],
 )
 def test_other_types_are_refused(packages, spent, says):
     with pytest.raises(InputError, match=says):
