@@ -13,8 +13,8 @@ TITLE = "Clearance, fields"
 
 
 @lru_cache(maxsize=1)  # a run has one map
-def nearest(grid: GridMap) -> NDArray[np.int32]:
-    """Find the nearest obstacle of every field; distances of all take three times the room.
+def rows_away(grid: GridMap) -> NDArray[np.int32]:
+    """Count how many rows up or down each field's column has its nearest obstacle.
 
     Parameters
     ----------
@@ -23,13 +23,15 @@ def nearest(grid: GridMap) -> NDArray[np.int32]:
 
     Returns
     -------
-    (2, rows + 2, cols + 2) int32
-        Row and column of the nearest one, on the map with a border of obstacles round it.
+    (rows + 2, cols + 2) int32
+        Of the map with a border of obstacles round it.
     """
-    from scipy.ndimage import distance_transform_edt
-
-    free = np.pad(~grid.obstacles, 1, constant_values=False)
-    return np.asarray(distance_transform_edt(free, return_distances=False, return_indices=True))
+    away = np.pad(~grid.obstacles, 1, constant_values=False).astype(np.int32)
+    for y in range(1, len(away)):
+        away[y] *= away[y - 1] + 1  # 0 in an obstacle
+    for y in range(len(away) - 2, 0, -1):
+        np.minimum(away[y], away[y + 1] + 1, out=away[y])
+    return away
 
 
 def measure(problem: Problem, plan: Plan) -> float:
@@ -48,5 +50,10 @@ def measure(problem: Problem, plan: Plan) -> float:
         Euclidean distance of the nearest field's centre to an obstacle's, in fields.
     """
     x, y = 1 + plan.path.T.astype(np.int64)
-    v, u = nearest(problem.map)[:, y, x]
-    return math.sqrt(((u - x) ** 2 + (v - y) ** 2).min())
+    away = rows_away(problem.map)
+    least, aside = math.inf, 0
+    while aside**2 < least:  # no column is beyond the border: that would have been nearer
+        rows = min(int(away[y, x - aside].min()), int(away[y, x + aside].min()))
+        least = min(least, aside**2 + rows**2)
+        aside += 1
+    return math.sqrt(least)

@@ -6,6 +6,10 @@ from typing import get_type_hints
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import array_shapes, arrays
+from scipy.ndimage import distance_transform_edt
 
 from gapath.discovery import kinds, load
 from gapath.grid import GridMap
@@ -77,6 +81,20 @@ def test_what_lies_outside_the_map_is_an_obstacle():
     empty = Problem(GridMap("empty", np.zeros((5, 5))), (0, 0), (4, 4))
     plans = [Plan(PlanStatus.FOUND, np.array([(x, 2)], dtype=np.int32)) for x in range(5)]
     assert [clearance(empty, plan) for plan in plans] == [1, 2, 3, 2, 1]
+
+
+@given(arrays(np.bool_, array_shapes(min_dims=2, max_dims=2, max_side=12)), st.data())
+def test_clearance_is_the_least_distance_of_all(blocked, data):
+    """Against SciPy's transform, which knows the distance of every field."""
+    rows, cols = blocked.shape
+    fields = st.tuples(st.integers(0, cols - 1), st.integers(0, rows - 1))
+    path = np.array(data.draw(st.lists(fields, min_size=1, max_size=5)), dtype=np.int32)
+    blocked[path[:, 1], path[:, 0]] = False
+    free = np.pad(~blocked, 1, constant_values=False)
+    distances = distance_transform_edt(free)[path[:, 1] + 1, path[:, 0] + 1]
+    start, target = map(tuple, path[[0, -1]].tolist())
+    problem = Problem(GridMap("drawn", blocked.astype(float)), start, target)
+    assert clearance(problem, Plan(PlanStatus.FOUND, path)) == distances.min()
 
 
 @pytest.mark.parametrize("name", kinds("metric"))
