@@ -60,6 +60,10 @@ def __getattr__(name: str) -> object:
         return version("gapath")
     if name not in _HOMES:
         raise AttributeError(f"module 'gapath' has no attribute {name!r}")
+    if _HOMES[name].startswith("pipelines."):
+        from gapath.errors import require_extra
+
+        require_extra(f"gapath.{name}", "report")
     globals()[name] = found = getattr(import_module(f"gapath.{_HOMES[name]}"), name)
     return found
 

@@ -3,7 +3,7 @@
 import copy
 import dataclasses
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from typing import Any, cast, get_args, get_origin, get_type_hints
 
@@ -12,7 +12,7 @@ from omegaconf import OmegaConf
 from omegaconf.errors import ConfigKeyError, OmegaConfBaseException
 
 from gapath.discovery import kinds, load, with_setting, yaml_names, yaml_values
-from gapath.errors import InputError, one_of, require
+from gapath.errors import InputError, Missing, one_of, require
 
 EXACT = 2**53
 """Below it every whole number is both an int and a float."""
@@ -46,11 +46,48 @@ def build(group: str, values: dict[str, Any], where: str) -> Any:
     }
     try:
         return load(group, kind)(**made)
+    except Missing:  # names the kind itself
+        raise
     except InputError as error:  # a component names its group; here it may stand elsewhere
         place = error.where
         if not place.startswith(f"{where}."):
             place = place.replace(f"{group}.", f"{where}.", 1)
         raise InputError(place, error.value, error.expected) from None
+
+
+def build_recorders(
+    chosen: Mapping[str, dict[str, Any]], asked: bool
+) -> tuple[dict[str, Any], list[str]]:
+    """Make recorders; where nobody asked for them, those are left out whose extra is missing.
+
+    Parameters
+    ----------
+    chosen : mapping of str to dict
+        Name of each -> its settings.
+    asked : bool
+        Whether somebody chose them, or they are the usual ones.
+
+    Returns
+    -------
+    made : dict of str to Recorder
+        The recorders by name.
+    left_out : list of str
+        What of each other one is missing, and how to install it.
+
+    Raises
+    ------
+    InputError
+        As `build`.
+    """
+    made, left_out = {}, []
+    for name, values in chosen.items():
+        try:
+            made[name] = build("recorder", values, f"recorder.{name}")
+        except Missing as error:
+            if asked:
+                raise
+            left_out.append(str(error))
+    return made, left_out
 
 
 def normalised(group: str, values: dict[str, Any], where: str) -> dict[str, Any]:

@@ -1,7 +1,9 @@
 """Bad input: the one exception that says so, and the checks that raise it."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
+from importlib import metadata
 from typing import Any
 
 MOST_MEMORY = 1 << 30
@@ -75,8 +77,33 @@ class InputError(ValueError):
         where = self.where if named else f"{path}: {self.where}"
         return InputError(where, self.value, self.expected)
 
-    def __reduce__(self) -> tuple[type["InputError"], tuple[str, object, str]]:
+    def __reduce__(self) -> tuple[type["InputError"], tuple[Any, ...]]:
         return type(self), (self.where, self.value, self.expected)
+
+
+class Missing(InputError):
+    """Packages that an extra of gapath brings are not installed.
+
+    The message says what needs them, and how to install them.
+
+    Parameters
+    ----------
+    what : str
+        What needs them, for example ``"recorder=rerun"``.
+    extra : str
+        The extra, for example ``"view"``.
+    packages : sequence of str
+        Those that are missing.
+    """
+
+    def __init__(self, what: str, extra: str, packages: Sequence[str]) -> None:
+        named = ", ".join(packages)
+        super().__init__(what, f"no {named}", f"pip install 'gapath[{extra}]'")
+        self.args = (f"{_shown(what)} needs {named}: {self.expected}",)
+        self._given = what, extra, packages
+
+    def __reduce__(self) -> tuple[type["InputError"], tuple[Any, ...]]:
+        return type(self), self._given
 
 
 def _shown(value: object) -> str:
@@ -106,6 +133,44 @@ def require(condition: bool, where: object, value: object, expected: str) -> Non
     """
     if not condition:
         raise InputError(where, value, expected)
+
+
+def require_extra(what: str, extra: str, *packages: str) -> None:
+    """Raise `Missing` unless what an extra of gapath brings is installed.
+
+    Parameters
+    ----------
+    what : str
+        What needs it.
+    extra : str
+        The extra.
+    *packages : str
+        Those of its packages that are needed; all of them where none is named.
+
+    Raises
+    ------
+    Missing
+        If one is not installed.
+    """
+    missing = [name for name in packages or packages_of(extra) if not _installed(name)]
+    if missing:
+        raise Missing(what, extra, missing)
+
+
+@lru_cache
+def packages_of(extra: str) -> tuple[str, ...]:
+    """Give the packages that an extra of gapath brings, as ``pyproject.toml`` names them."""
+    needed = metadata.requires("gapath") or []
+    named = re.compile(rf"([\w.-]+).*; *extra == ['\"]{extra}['\"]")
+    return tuple(found[1] for each in needed if (found := named.match(each)))
+
+
+def _installed(package: str) -> bool:
+    try:
+        metadata.version(package)
+    except metadata.PackageNotFoundError:
+        return False
+    return True
 
 
 def require_all(home: object, where: str, needed: Mapping[str, Any]) -> None:

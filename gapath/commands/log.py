@@ -13,7 +13,7 @@ from typing import Any
 
 import gapath
 from gapath.commands import crate
-from gapath.errors import InputError, printable, require
+from gapath.errors import InputError, printable, require, require_extra
 from gapath.events import Event, Finished, RunFinished, RunStarted
 from gapath.recorders import mcap
 from gapath.recorders.mcap import FILE
@@ -240,6 +240,7 @@ def _compared(path: Path, arguments: argparse.Namespace) -> tuple[int, str]:
 
 
 def _rerun(arguments: argparse.Namespace) -> int:
+    require_extra("rerun", "view")
     path = _log_of(arguments.file)
     folder = arguments.folder or path.parent
     folder.mkdir(parents=True, exist_ok=True)
@@ -268,6 +269,7 @@ def _record(path: Path, trials: list[int], folder: Path, limits: mcap.Limits) ->
 
 
 def _view(arguments: argparse.Namespace) -> int:
+    require_extra("view", "view")
     path = _log_of(arguments.file)
     require(path.is_file(), path, "no such file", "a log or a recording (.rrd)")
     with scratch() as folder:

@@ -22,7 +22,7 @@ from omegaconf import DictConfig
 from omegaconf.errors import OmegaConfBaseException
 
 from gapath.discovery import OFFERS, kinds, with_setting, yaml_names
-from gapath.errors import InputError, did_you_mean, one_of, require
+from gapath.errors import InputError, Missing, did_you_mean, one_of, packages_of, require
 from gapath.running.config import conf_folder
 from gapath.store.settings import LONGEST_WHOLE, plain_yaml
 from gapath.task import find_task
@@ -151,8 +151,8 @@ def _found(error: BaseException, words: Sequence[str], sweep: bool) -> InputErro
     """Find the setting that an error of Hydra's is about, and what would be right."""
     if isinstance(error, MissingConfigException) and "/" in (error.missing_cfg_file or ""):
         group, _, name = error.missing_cfg_file.rpartition("/")
-        if right := installing(group, name):
-            return InputError(group, f"{name}, which is not installed", right)
+        if missing := missing_engine(group, name):
+            return missing
         with _hydra():
             names = GlobalHydra.instance().config_loader().get_group_options(group)
         return InputError(group, name, one_of(name, names))
@@ -193,11 +193,11 @@ _EXTRAS = {
 """What the choice of an engine or a sweeper begins with -> the extra of gapath that has it."""
 
 
-def installing(group: str, name: str) -> str:
-    """Say how to install what an engine or a sweeper needs; empty where that is not known."""
+def missing_engine(group: str, name: str) -> Missing | None:
+    """Say which extra an engine or a sweeper comes with that is not there; None if with none."""
     extras = (extra for begin, extra in _EXTRAS.items() if f"{group}/{name}".startswith(begin))
-    extra = next(extras, "")
-    return f"pip install 'gapath[{extra}]', or another one" if extra else ""
+    extra = next(extras, None)
+    return Missing(f"{group}={name}", extra, packages_of(extra)) if extra else None
 
 
 @contextlib.contextmanager

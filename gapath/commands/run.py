@@ -272,8 +272,9 @@ def describe(run: Run, execution: Execution, short: bool) -> str:
     table = "\n".join(f"{name:<14}{printable(value)}" for name, value in lines.items())
     if execution.state is RunState.SKIPPED:
         return f"{table}\n\n{skipped}"
-    files = "\n".join(f"  {printable(execution.folder / name)}" for name in execution.files)
-    return f"{table}\n\nfiles\n{files}"
+    files = [f"  {printable(execution.folder / name)}" for name in execution.files]
+    without = [f"without {each}" for each in run.left_out]
+    return "\n".join([table, "", "files", *files, *without])
 
 
 def main() -> None:

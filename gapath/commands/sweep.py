@@ -26,11 +26,11 @@ from omegaconf import DictConfig
 from gapath.commands import run as command
 from gapath.commands.asker import begin_sweep
 from gapath.commands.composing import Composer
-from gapath.commands.refusal import installing
+from gapath.commands.refusal import missing_engine
 from gapath.commands.search import Search
 from gapath.commands.signals import following
 from gapath.commands.watching import Shown
-from gapath.errors import FAULTS, printable, require
+from gapath.errors import FAULTS, InputError, printable, require
 from gapath.running.config import Run
 from gapath.running.experiment import run_folder
 from gapath.running.sweep import Standing, SweepFile, difference, host, tell, unfinished
@@ -114,9 +114,9 @@ def _check_engine(config: DictConfig) -> None:
     usual = sweeper == "basic" or command.searches(config.hydra)
     require(usual, "hydra/sweeper", sweeper, "one of basic, optuna")
     name = str(config.hydra.runtime.choices["hydra/launcher"])
-    known = str(config.hydra.launcher._target_) in Plugins.instance().class_name_to_class
-    right = installing("hydra/launcher", name) or "one that is there"
-    require(known, "hydra/launcher", f"{name}, which is not installed", right)
+    if str(config.hydra.launcher._target_) not in Plugins.instance().class_name_to_class:
+        other = InputError("hydra/launcher", f"{name}, which is not installed", "one that is")
+        raise missing_engine("hydra/launcher", name) or other
 
 
 @dataclass
@@ -175,6 +175,8 @@ class _Sweep:
     whole: set[tuple[str, ...]] = field(default_factory=set)
     """Jobs whose runs need nothing more."""
     works: list[tuple[int, int]] = field(default_factory=list)
+    without: dict[str, None] = field(default_factory=dict)
+    """Usual recorders that are not installed."""
     codes: list[int] = field(default_factory=list)
     begun: int = 0
     """Jobs that engines got so far."""
@@ -184,6 +186,7 @@ class _Sweep:
 
     def add(self, run: Run, words: list[str]) -> None:
         """Add a checked job; raises InputError if it is another one's run."""
+        self.without.update(dict.fromkeys(run.left_out))
         folder = run_folder(run)
         command.check_apart(folder.path, words, self.folders)
         if not run.force and is_whole(folder, run.settings):
@@ -208,6 +211,8 @@ class _Sweep:
             if other.path.parent == place and not other.alive and {*other.folders} != {*names}:
                 command.warn(_told_apart(other.path, other.left, difference(other.command, line)))
         self.open(place)
+        for recorder in self.without:
+            command.warn(f"without {recorder}")
         command.warn(told(self.works))
 
     def open(self, place: Path, most: int = 0) -> None:

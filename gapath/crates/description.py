@@ -9,7 +9,7 @@ from urllib.parse import quote
 
 from gapath.crates.plain import as_value, without_folders
 from gapath.crates.reading import PROFILE
-from gapath.errors import InputError
+from gapath.errors import require_extra
 from gapath.store.records import CONFIG, FileEntry, Manifest, RunRecord
 from gapath.store.settings import flatten
 
@@ -81,12 +81,10 @@ class Credits(NamedTuple):
 
 def library() -> tuple[Any, Any]:
     """Give what of rocrate is used; raises InputError if it is not installed."""
-    try:
-        from rocrate.model import ContextEntity
-        from rocrate.rocrate import ROCrate
-    except ImportError as error:
-        right = "the extra that writes crates: pip install 'gapath[crate]'"
-        raise InputError("crate", f"no {error.name}", right) from error
+    require_extra("crate", "crate")
+    from rocrate.model import ContextEntity
+    from rocrate.rocrate import ROCrate
+
     return ContextEntity, ROCrate
 
 

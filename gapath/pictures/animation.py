@@ -10,15 +10,12 @@ from string import Template
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.collections import LineCollection
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from PIL import Image
 
 from gapath.errors import require
 from gapath.pictures.board import POINT, draw_path
+from gapath.pictures.canvas import Axes, Figure, FigureCanvasAgg, LineCollection
 from gapath.pictures.shown import text_of
 
 FRAMES = 60

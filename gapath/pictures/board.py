@@ -1,12 +1,17 @@
 """A map as a picture: what a field costs as grey, obstacles in a colour of their own."""
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.colors import LinearSegmentedColormap, to_rgb, to_rgba
-from matplotlib.image import AxesImage
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 from numpy.typing import NDArray
+
+from gapath.pictures.canvas import (
+    Axes,
+    AxesImage,
+    Line2D,
+    LinearSegmentedColormap,
+    Patch,
+    to_rgb,
+    to_rgba,
+)
 
 POINT, LINE, GROWN = "#D55E00", "#56B4E9", "#E69F00"
 PATH, UNKNOWN = "#0072B2", to_rgba("#56B4E9", 0.35)

@@ -1,8 +1,9 @@
 """The course of a genetic algorithm as a picture."""
 
 import numpy as np
-from matplotlib.axes import Axes
 from numpy.typing import NDArray
+
+from gapath.pictures.canvas import Axes
 
 
 def draw_convergence(axes: Axes, best: NDArray[np.float64], mean: NDArray[np.float64]) -> None:

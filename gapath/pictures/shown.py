@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from gapath.errors import InputError
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes as Axes
+    from gapath.pictures.canvas import Axes as Axes
 
 
 class Shown:
@@ -68,9 +68,9 @@ def axes_for(ax: "Axes | None") -> "Axes":
     """
     if ax is not None:
         return ax
-    from matplotlib import pyplot
+    from gapath.pictures.canvas import new_axes
 
-    return pyplot.subplots(layout="constrained")[1]
+    return new_axes()
 
 
 def png_of(draw: Callable[["Axes"], object]) -> bytes:
@@ -86,7 +86,7 @@ def png_of(draw: Callable[["Axes"], object]) -> bytes:
     bytes
         PNG.
     """
-    from matplotlib.figure import Figure
+    from gapath.pictures.canvas import Figure
 
     figure, stream = Figure(), io.BytesIO()
     draw(figure.subplots())

@@ -17,8 +17,8 @@ from gapath.events import Event, RunFinished, RunStarted
 from gapath.grid import Field, GridMap
 from gapath.planning.acceleration import AUTO, with_kernels
 from gapath.problem import CornerCutting, Plan, Problem
-from gapath.running.config import Root, check_name, read_problem, settings_of, split
-from gapath.running.naming import Method, changes_of, map_name, usual_values
+from gapath.running.config import Root, read_problem, settings_of, split
+from gapath.running.naming import Method, changes_of, check_name, map_name, usual_values
 from gapath.running.posing import first_of
 from gapath.running.shards import WHOLE, span
 from gapath.store.settings import flatten, nested

@@ -9,14 +9,14 @@ from typing import Any
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import InterpolationResolutionError
 
-from gapath.components import build, checked, normalised, typed
+from gapath.components import build, build_recorders, checked, normalised, typed
 from gapath.discovery import kinds
 from gapath.errors import InputError, one_of, require
 from gapath.events import Recorder, Settings
 from gapath.grid import GridMap
 from gapath.planning.acceleration import with_kernels
 from gapath.problem import CornerCutting, Problem
-from gapath.running.naming import Method, map_name, method_of
+from gapath.running.naming import Method, check_name, map_name, method_of
 from gapath.running.posing import first_of
 from gapath.running.shards import span, without_whole
 from gapath.store.inputs import Inputs, watched
@@ -69,9 +69,6 @@ class Root:
     provenance: bool
 
 
-RESERVED = ("bench", "compare", "report")
-"""Folders of outputs that hold no runs."""
-
 HOW = ("output", "force", "threads", "kernels", "provenance")
 """Settings of how to run, which change no result: no part of a run's settings."""
 
@@ -110,6 +107,8 @@ class Run:
         The files that the map and the method were made from: path -> SHA-256.
     first : int
         The first trial: 0 but of a shard.
+    left_out : sequence of str
+        Usual recorders that are not installed: what is missing of each, and where it is.
     """
 
     experiment: str
@@ -127,6 +126,7 @@ class Run:
     method_inputs: Inputs = field(default_factory=dict, repr=False)
     provenance: bool = False
     first: int = 0
+    left_out: Sequence[str] = ()
 
     @property
     def count(self) -> int:
@@ -144,13 +144,6 @@ def conf_folder() -> str:
     return str(files("gapath.conf"))
 
 
-def check_name(name: str) -> None:
-    """Raise InputError for what no experiment may be called."""
-    plain = name.replace("_", "").replace("-", "").isalnum()
-    require(plain, "name", repr(name), "letters, digits, - and _")
-    require(name not in RESERVED, "name", name, "another: the report's files lie there")
-
-
 def make_run(
     config: DictConfig, choices: Mapping[str, str | None], overridden: Collection[str] = ()
 ) -> Run:
@@ -163,7 +156,8 @@ def make_run(
     choices : mapping
         Configuration group -> name of the chosen YAML.
     overridden : collection of str
-        Settings that the command line sets, for the run's name.
+        Settings that the command line sets, for the run's name. One that sets no recorder gets
+        those of the usual ones that are installed.
 
     Returns
     -------
@@ -185,10 +179,10 @@ def make_run(
     check_name(root.name)
     useful = task.threaded or root.threads == 1
     require(useful, "threads", root.threads, f"1 with task={task.name}, which they do not speed up")
+    asked = any(name.partition(".")[0] == "recorder" for name in overridden)
+    recorders, left_out = build_recorders(root.recorder, asked)
+    root.recorder = {name: root.recorder[name] for name in recorders}
     settings = settings_of(root, chosen)
-    recorders: list[Recorder] = [
-        build("recorder", values, f"recorder.{name}") for name, values in root.recorder.items()
-    ]
     with watched() as method_inputs:
         made = with_kernels(task.make(settings), root.kernels)
         maps = made.read()
@@ -201,14 +195,14 @@ def make_run(
         made.check(problem)
     columns(task.row)  # a package's wrong metric, or event, is refused before anything is written
     check_events(task)
-    for recorder in recorders:
+    for recorder in recorders.values():
         recorder.check(trials)
     return Run(
         root.name,
         method_of(task, _with_types_of(settings, loose), choices, overridden),
         problem,
         made,
-        [recorder for recorder in recorders if recorder.records],
+        [recorder for recorder in recorders.values() if recorder.records],
         root.seed,
         part.stop if root.shards > 1 else trials,
         flatten(settings),
@@ -219,6 +213,7 @@ def make_run(
         method_inputs | checked_with,
         root.provenance,
         part.start,
+        left_out,
     )
 
 

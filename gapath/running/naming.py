@@ -1,4 +1,7 @@
-"""What a run's map and method are called in tables: by name, and what differs from the YAML."""
+"""What an experiment may be called, and what a run's map and method are called in tables.
+
+These have the name of a YAML, and what differs from it.
+"""
 
 from collections.abc import Collection, Iterable, Mapping
 from importlib.resources import files
@@ -7,6 +10,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gapath.discovery import parsed_yaml, yaml_names, yaml_values
+from gapath.errors import require
 from gapath.store.settings import Value, flatten, written
 
 if TYPE_CHECKING:
@@ -15,6 +19,17 @@ if TYPE_CHECKING:
 _SHOWN_APART = ("path", "start", "target", "scenario", "problem", "map_class", "drawing", "number",
                 "instance")  # fmt: skip
 """Settings of maps that are their name, or what tables have columns for."""
+
+
+RESERVED = ("bench", "compare", "report")
+"""Folders of outputs that hold no runs."""
+
+
+def check_name(name: str) -> None:
+    """Raise InputError for what no experiment may be called."""
+    plain = name.replace("_", "").replace("-", "").isalnum()
+    require(plain, "name", repr(name), "letters, digits, - and _")
+    require(name not in RESERVED, "name", name, "another: the report's files lie there")
 
 
 class Method(NamedTuple):

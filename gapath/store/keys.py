@@ -12,8 +12,8 @@ from gapath.problem import Problem
 from gapath.store.inputs import Inputs, contents, without_paths
 from gapath.store.settings import Flat, text_of
 
-VERSIONED = ("gapath", "numpy", "numba", "mcap", "zstandard", "rosbags", "rerun-sdk", "hydra-core",
-             "pyarrow")  # fmt: skip
+VERSIONED = ("gapath", "numpy", "numba", "mcap", "zstandard", "rosbags", "hydra-core", "pyarrow")
+"""What decides results, logs and rows. A recording is made from the log, with whatever Rerun."""
 
 _NO_SETTING = ("trials", "shard", "shards", "recorder", "map")
 """What makes no other setting: it changes no trial, or is told by what it comes to, the map."""

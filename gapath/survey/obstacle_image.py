@@ -11,7 +11,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.errors import Checks, InputError, require
+from gapath.errors import Checks, InputError, require, require_extra
 from gapath.grid import nearest_free, other_reading
 from gapath.kernels.units import OBSTACLE, SCALE
 from gapath.problem import Query
@@ -50,6 +50,8 @@ class Clearance:
     threshold: str | float
 
     def __post_init__(self) -> None:
+        kind = type(self).__module__.rpartition(".")[2]
+        require_extra(f"planner {kind}", "image", "scikit-image")
         check = Checks(self, "planner")
         check("robot_radius", 0 <= self.robot_radius <= 10**6, "a number from 0 to 1000000")
         check("radius_unit", self.radius_unit in ("pixels", "metres"), '"pixels" or "metres"')

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import gapath
-from gapath.errors import InputError, printable
+from gapath.errors import InputError, printable, require_extra
 
 _EPILOG = """\
 commands:
@@ -46,11 +46,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     logging.getLogger("matplotlib").setLevel(logging.ERROR)  # where its cache lies is no news
     try:
         if arguments[:1] == ["runs"]:
+            require_extra("runs", "report")
             from gapath.pipelines.asking import command  # pandas takes half a second to start
 
             with _no_collection():
                 command.main(arguments[1:])
         elif arguments[:1] == ["compare"]:
+            require_extra("compare", "report")
             from gapath.pipelines.compare import command as comparing
 
             with _no_collection():
@@ -108,6 +110,7 @@ def _report_parser() -> argparse.ArgumentParser:
 
 
 def _report(outputs: Path, folder: Path) -> None:
+    require_extra("a report", "report")
     # pandas and matplotlib take a second to start
     from gapath.pipelines.report.report import make_report
 

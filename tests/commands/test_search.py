@@ -200,5 +200,5 @@ def test_without_the_package_the_extra_is_told(gapath, monkeypatch):
     monkeypatch.delitem(ConfigStore.instance().repo["hydra"]["sweeper"], "optuna.yaml")
     code, text, errors = gapath("experiment=tune")
     assert (code, text) == (cli.BAD_INPUT, "")
-    told = "optuna, which is not installed, expected pip install 'gapath[tune]', or another one"
-    assert errors == f"gapath: hydra/sweeper: got {told}\n"
+    told = "hydra/sweeper=optuna needs hydra-optuna-sweeper: pip install 'gapath[tune]'"
+    assert errors == f"gapath: {told}\n"

@@ -134,10 +134,10 @@ def test_of_a_sweep_only_what_is_left_is_done(gapath, tmp_path, engine):
 @pytest.mark.parametrize(
     ("engine", "right"),
     [
-        ("jobilb", "jobilb, expected one of basic, joblib, ray"),
-        ("joblib", "joblib, which is not installed, expected pip install 'gapath[joblib]', or"),
-        ("submitit_slurm", "submitit_slurm, which is not installed, expected pip install"),
-        ("ray", "which is not installed, expected pip install 'gapath[ray]', or another"),
+        ("jobilb", ": got jobilb, expected one of basic, joblib, ray"),
+        ("joblib", "=joblib needs hydra-joblib-launcher: pip install 'gapath[joblib]'\n"),
+        ("submitit_slurm", "=submitit_slurm needs hydra-submitit-launcher: pip install"),
+        ("ray", "=ray needs hydra-ray-launcher: pip install 'gapath[ray]'\n"),
     ],
 )
 def test_an_engine_that_is_not_there_is_one_line(gapath, tmp_path, monkeypatch, engine, right):
@@ -147,8 +147,7 @@ def test_an_engine_that_is_not_there_is_one_line(gapath, tmp_path, monkeypatch, 
     )
     code, text, errors = gapath(*SMALL, "seed=1,2", f"hydra/launcher={engine}")
     assert (code, text, errors.count("\n")) == (cli.BAD_INPUT, "", 1)
-    assert errors.startswith("gapath: hydra/launcher: got ")
-    assert right in errors
+    assert errors.startswith(f"gapath: hydra/launcher{right}")
     assert not (tmp_path / "out").exists()
 
 

@@ -1,6 +1,5 @@
 """Runs into a crate: what is in it, whole or not at all, and nothing of the machine."""
 
-import builtins
 import json
 import os
 import shutil
@@ -205,22 +204,6 @@ def test_what_stops_on_the_way_leaves_nothing(made, monkeypatch, capfd):
     code, out, err = called(capfd, "crate", made, "crate")
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert sorted(each.name for each in Path().iterdir()) == ["office.map", "out"]
-
-
-def test_without_the_extra_it_is_named(made, monkeypatch, capfd):
-    real = builtins.__import__
-
-    def without(name, *others):
-        if name.startswith("rocrate"):
-            raise ModuleNotFoundError(f"No module named {name!r}", name="rocrate")
-        return real(name, *others)
-
-    monkeypatch.setattr(builtins, "__import__", without)
-    code, out, err = called(capfd, "crate", made, "crate")
-    monkeypatch.undo()
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert "pip install 'gapath[crate]'" in err
-    assert not Path("crate").exists()
 
 
 def test_a_description_that_nobody_could_read_is_not_written(made, monkeypatch, capfd):

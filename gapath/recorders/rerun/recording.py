@@ -10,7 +10,7 @@ written here, because Rerun's own file writer loses data on a full disk without 
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from gapath.errors import require
+from gapath.errors import require, require_extra
 from gapath.events import Event, Finished, RunStarted, Surveyed, TrialStarted
 from gapath.store.durable import part_of, publish, write_part
 
@@ -27,8 +27,8 @@ class Recorder:
     Raises
     ------
     InputError
-        If a number is not a whole one from 0 to 999999; from `record`, if the run has no such
-        trial.
+        If a number is not a whole one from 0 to 999999, or Rerun is not installed; from `record`,
+        if the run has no such trial.
     """
 
     records = True
@@ -41,6 +41,7 @@ class Recorder:
     _names: list[str] = field(init=False, repr=False, default_factory=list)
 
     def __post_init__(self) -> None:
+        require_extra("recorder rerun", "view", "rerun-sdk")
         good = isinstance(self.trials, list) and all(
             type(trial) is int and 0 <= trial < 10**6 for trial in self.trials
         )
