@@ -17,6 +17,9 @@ FILES_IN_A_FOLDER = 12
 LINES_OF_A_FILE = 350
 ARGUMENTS = 9
 
+LINKS = ("conf", "maps", "pipelines")
+"""Folders at the top that are part of the package; in an sdist, which has no links, copies."""
+
 SAME_SIGNATURE = {("benchmarks/rivals/textbook.py", "evolve")}
 """The rival of a kernel takes what the kernel takes."""
 
@@ -34,7 +37,9 @@ NAMED_OTHERWISE = {
 def folders(root, *tops):
     """Folders with Python files, and all of their files; links lead to other tops."""
     for top in tops:
-        for place, _, names in os.walk(root / top):
+        for place, inner, names in os.walk(root / top):
+            if Path(place) == root / "gapath":
+                inner[:] = [name for name in inner if name not in LINKS]
             if any(name.endswith(".py") for name in names):
                 yield Path(place).relative_to(root).as_posix(), sorted(names)
 
