@@ -136,11 +136,11 @@ def test_an_answer_is_shown_in_its_step_only(found, events):
     assert not any(entity.endswith("not_adopted") for entity, _ in found)  # none had a path
     texts = [(step, text[0]) for step, text in found["/calls", "TextLog:text"]]
     assert texts == [
-        (1, "C0 found: 2 in 3 epochs, adopted"),
-        (2, "B0 not found: 300000 in 9 epochs"),
-        (4, "C0 not found: 300000 in 9 epochs"),
-        (4, "C1 not found: 300000 in 9 epochs"),
-        (5, "A0 found: 3.5 in 2 epochs, adopted"),
+        (1, "#1 C0 found: 2 in 3 epochs, adopted"),
+        (2, "#2 B0 not found: 300000 in 9 epochs"),
+        (4, "#4 C0 not found: 300000 in 9 epochs"),
+        (4, "#4 C1 not found: 300000 in 9 epochs"),
+        (5, "#5 A0 found: 3.5 in 2 epochs, adopted"),
     ]
 
 
@@ -153,9 +153,9 @@ def test_a_call_that_comes_again_step_by_step_is_listed_once(tmp_path, events):
     record(tmp_path, [*others[:-2], *calls, *others[-2:]])
     found = read(tmp_path / "trial-0.rrd")["/calls", "TextLog:text"]
     assert [(step, text[0]) for step, text in found] == [
-        (1, "C0 found: 7.5, adopted, 3 steps in a row"),
-        (4, "C0 found: 7, adopted"),
-        (6, "C0 found: 7, adopted"),
+        (1, "#1 C0 found: 7.5, adopted, 3 steps in a row"),
+        (4, "#4 C0 found: 7, adopted"),
+        (6, "#6 C0 found: 7, adopted"),
     ]
 
 

@@ -41,7 +41,7 @@ def check_recording(found, population, epochs):
             moved.add(who)
             gained[operator] += population.gains[i]
             gain = population.gains[i]
-            text = f"{population.names[operator]}, {who}: {population.costs[i]:g}"
+            text = f"#{epoch} {population.names[operator]}, {who}: {population.costs[i]:g}"
             texts.append((epoch, [text + (f", {gain:.3g} less" if gain else "")]))
             levels.append((epoch, ["INFO" if gain else "DEBUG"]))
         for who in moved:

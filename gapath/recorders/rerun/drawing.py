@@ -165,6 +165,19 @@ def map_view(
     return rrb.Spatial2DView(origin="map", name=title(grid), visual_bounds=bounds, overrides=trails)
 
 
+def texts_view(origin: str, name: str, timeline: str) -> rrb.TextLogView:
+    """List texts, each of which begins with its time.
+
+    The viewer has a column for that, but makes it as wide as the first rows need: of "#100" it
+    shows "#1...".
+    """
+    hidden = rrb.encodings.TimelineColumn(timeline, visible=False)
+    columns = rrb.TextLogColumns(
+        timeline_columns=[hidden], text_log_columns=[rrb.encodings.TextLogColumn("Body")]
+    )
+    return rrb.TextLogView(origin=origin, name=name, columns=columns)
+
+
 def blueprint(
     view: rrb.View | rrb.Container, panels: list[rrb.View], timeline: str
 ) -> rrb.Blueprint:

@@ -14,7 +14,13 @@ from gapath.events import (
 )
 from gapath.grid import GridMap
 from gapath.querying.told import posed_in
-from gapath.recorders.rerun.drawing import blueprint, document, map_view, problem_rows
+from gapath.recorders.rerun.drawing import (
+    blueprint,
+    document,
+    map_view,
+    problem_rows,
+    texts_view,
+)
 
 _SENTENCES = {
     Outcome.REACHED: "The robot reached the target",
@@ -75,10 +81,6 @@ def layout(grid: GridMap, timeline: str, timed: bool) -> rrb.Blueprint:
     )
     panels = [
         rrb.TextDocumentView(origin="text", name="Settings and outcome"),
-        rrb.TextLogView(
-            origin="calls",
-            name="Calls of planners: part, answer, cost",
-            columns=rrb.TextLogColumns(text_log_columns=[rrb.encodings.TextLogColumn("Body")]),
-        ),
+        texts_view("calls", "Calls of planners: step, part, answer, cost", timeline),
     ]
     return blueprint(view, panels, timeline)

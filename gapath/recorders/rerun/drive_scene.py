@@ -93,7 +93,7 @@ def recording(run: RunStarted, events: list[Event]) -> bytes:
     timed = not all(np.isnan(step.seconds) for step in steps)
     stream = new_stream(run, trial)
     memory = stream.memory_recording()
-    stream.send_blueprint(layout(run.problem.map, TIMELINE, timed), make_active=False)
+    stream.send_blueprint(layout(run.problem.map, TIMELINE, timed))
     stream.send_recording_name(f"{run.problem.map.name} {run.method} trial {trial.trial}")
     _log_true_map(stream, run.problem.map)
     log_problem(stream, posed_in(run, events), 2)
@@ -238,8 +238,10 @@ def _send_calls(stream: rr.RecordingStream, drive: _Drive) -> None:
     if drive.calls:
         rows = _listed(drive)
         time = [rr.TimeColumn(TIMELINE, sequence=[row.step for row in rows])]
-        texts = [f"{row.text}, {row.times} steps in a row" if row.times > 1 else row.text
-                 for row in rows]  # fmt: skip
+        texts = [
+            f"#{row.step} {row.text}" + (f", {row.times} steps in a row" if row.times > 1 else "")
+            for row in rows
+        ]
         levels = ["INFO" if row.adopted else "DEBUG" for row in rows]
         stream.send_columns("calls", time, rr.TextLog.columns(text=texts, level=levels))
 

@@ -48,7 +48,7 @@ def recording(run: RunStarted, events: list[Event]) -> bytes:
     memory = stream.memory_recording()
     text = rrb.TextDocumentView(origin="text", name="Settings and result")
     layout = blueprint(map_view(run.problem.map), [text], TIMELINE)
-    stream.send_blueprint(layout, make_active=False)
+    stream.send_blueprint(layout)
     stream.send_recording_name(f"{run.problem.map.name} {run.method} trial {trial.trial}")
     posed = posed_in(run, events)
     log_problem(stream, posed, 6)

@@ -14,6 +14,7 @@ from gapath.recorders.rerun.drawing import (
     centres,
     line,
     send_curve,
+    texts_view,
 )
 
 _COLORS: tuple[Color, ...] = (
@@ -68,6 +69,7 @@ def log_population(
         strips = [centres(population.polygon(i)) for i in standing[left, k]]
         stream.send_columns(entity, time(left + 1), rr.LineStrips2D.columns(strips=strips))
     told = zip(
+        (first_epoch - 1 + population.epochs).tolist(),
         population.operators.tolist(),
         population.individuals.tolist(),
         population.costs.tolist(),
@@ -75,9 +77,9 @@ def log_population(
         strict=True,
     )
     texts = [
-        f"{population.names[operator]}, {individual}: {cost:g}"
+        f"#{epoch} {population.names[operator]}, {individual}: {cost:g}"
         + (f", {gain:.3g} less" if gain else "")
-        for operator, individual, cost, gain in told
+        for epoch, operator, individual, cost, gain in told
     ]
     levels = ["INFO" if gain else "DEBUG" for gain in population.gains]
     columns = rr.TextLog.columns(text=texts, level=levels)
@@ -107,10 +109,6 @@ def gains_views(population: Population) -> list[rrb.View]:
     return [rrb.TimeSeriesView(origin="gained", name="Cost lowered so far, all individuals")]
 
 
-def changes_view() -> rrb.View:
+def changes_view(timeline: str) -> rrb.View:
     """List the changes."""
-    return rrb.TextLogView(
-        origin="changes",
-        name="Changes: operator, individual, cost",
-        columns=rrb.TextLogColumns(text_log_columns=[rrb.encodings.TextLogColumn("Body")]),
-    )
+    return texts_view("changes", "Changes: epoch, operator, individual, cost", timeline)

@@ -75,7 +75,7 @@ def recording(run: RunStarted, events: list[Event]) -> bytes:
     stream = new_stream(run, trial)
     memory = stream.memory_recording()
     surveys = [event for event in events if isinstance(event, Surveyed)]
-    stream.send_blueprint(_blueprint(run, evolutions), make_active=False)
+    stream.send_blueprint(_blueprint(run, evolutions))
     stream.send_recording_name(f"{run.problem.map.name} {run.method} trial {trial.trial}")
     posed = posed_in(run, events)
     log_problem(stream, posed, 6)
@@ -260,7 +260,7 @@ def _blueprint(run: RunStarted, evolutions: list[Evolved]) -> rrb.Blueprint:
         ]
         if evolution.population:
             curves += gains_views(evolution.population)
-            panels.append(changes_view())
+            panels.append(changes_view(TIMELINE))
         else:
             name = "Obstacle fields on the best path"
             curves.append(rrb.TimeSeriesView(origin="obstacles", name=name, plot_legend=plain))
