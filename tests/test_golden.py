@@ -86,7 +86,7 @@ def run(folder, map_name, planner, trials=2, **values):
     settings = yaml_values("planner", planner) | values
     problem = Problem(grid, grid.start, grid.target)
     made = build("planner", settings, "planner")
-    recorders = [mcap.Recorder()]
+    recorders = [mcap.Recorder(step_s=0.1)]
     return execute(
         Run(
             "golden",

@@ -32,6 +32,7 @@ _KINDS = {
 _BYTES = "application/octet-stream"
 
 _FILES = {
+    "metadata.yaml": "what makes the folder a bag of ROS 2",
     "run.mcap": "the log: the map, the settings, every event of every trial",
     "trials.parquet": "a row a trial",
     CONFIG: "the settings",

@@ -148,9 +148,11 @@ class Earlier:
             return False
         if not self.events:
             return True
+        from gapath.recorders.mcap.format import LOG_VERSION, Form
         from gapath.recorders.mcap.messages import Messages
 
-        was, now_is = Messages(started), Messages(started)
+        form = Form(LOG_VERSION, step_ns=1)  # the same for both
+        was, now_is = Messages(started, form), Messages(started, form)
         told = [record for event in self.events for record in was.records(event)]
         again = trial.events(self.steps)
         return told == [record for event in again for record in now_is.records(event)]

@@ -77,7 +77,7 @@ def short_chunks(monkeypatch):
 
 
 def logged(events, folder):
-    recorder = mcap.Recorder()
+    recorder = mcap.Recorder(step_s=0.1)
     recorder.open(str(folder))
     for event in events:
         recorder.record(event)

@@ -41,7 +41,7 @@ def run_with(folder, planner):
 def rewritten(run, change=lambda event: event, versions=None):
     """Write a run's log anew, with a change, as if it had come to that."""
     events = list(mcap.read_events(run / mcap.FILE))
-    recorder = mcap.Recorder()
+    recorder = mcap.Recorder(step_s=0.1)
     recorder.open(str(run))
     for event in events:
         event = change(event)

@@ -81,7 +81,7 @@ def make_trials(grid: GridMap, planner: str, experiment: str, seed: int, n: int)
 def write_log(folder: Path, grid: GridMap, trials: pd.DataFrame) -> None:
     first = trials.iloc[0]
     problem = Problem(grid, grid.start, grid.target)
-    recorder = Recorder()
+    recorder = Recorder(step_s=0.1)
     recorder.open(str(folder))
     recorder.record(
         RunStarted(
@@ -174,7 +174,7 @@ def make_calls(i: int, step: int, row: Any) -> Iterator[Called]:
 def write_drive_log(folder: Path, grid: GridMap, drives: pd.DataFrame) -> None:
     first = drives.iloc[0]
     problem = Problem(grid, grid.start, grid.target)
-    recorder = Recorder()
+    recorder = Recorder(step_s=0.1)
     recorder.open(str(folder))
     recorder.record(
         RunStarted(

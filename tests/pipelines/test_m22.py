@@ -42,7 +42,7 @@ PLANNERS = {
 def run(folder, experiment, grid, planner, trials=4, **values):
     made = build("planner", yaml_values("planner", planner) | values, "planner")
     problem = Problem(grid, grid.start, grid.target)
-    recorders = [mcap.Recorder()]
+    recorders = [mcap.Recorder(step_s=0.1)]
     settings = plan_settings(planner, values)
     execute(
         Run(

@@ -196,7 +196,7 @@ def outputs(tmp_path_factory):
         problem = Problem(grid, grid.start, grid.target, CornerCutting.NO_DIAGONALS)
         settings = plan_settings(planner, {"max_epochs": 40})
         task = PlanTask(build("planner", nested(settings)["planner"], "planner"))
-        log = [mcap.Recorder()]
+        log = [mcap.Recorder(step_s=0.1)]
         execute(
             Run(
                 "s04_table1", Method(planner), problem, task, log, 0, 3, settings, str(folder),

@@ -173,9 +173,20 @@ def write(events, folder, chunk_messages=100):
 
 
 def _write(events, folder):
-    recorder = mcap.Recorder()
+    recorder = mcap.Recorder(step_s=0.1)
     recorder.open(str(folder))
     for event in events:
         recorder.record(event)
-    assert recorder.close() == ["run.mcap"]
+    assert recorder.close() == ["run.mcap", "metadata.yaml"]
     return Path(folder) / "run.mcap"
+
+
+def write_as(form, events, path):
+    """Write a log of another form, such as an earlier one."""
+    with path.open("wb") as file:
+        writer = log.LogWriter(file, form)
+        for event in events:
+            for _ in writer.write(event):
+                pass
+        writer.finish()
+    return path

@@ -1,5 +1,6 @@
 """The log: what goes in comes out."""
 
+import dataclasses
 import tempfile
 import time
 from string import ascii_letters
@@ -9,7 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from log_events import example, example_drives, logged, plain, write
+from log_events import example, example_drives, logged, plain, write, write_as
+from mcap.reader import make_reader
 
 from gapath.errors import InputError
 from gapath.events import (
@@ -38,6 +40,7 @@ from gapath.recorders.mcap import format as log_format
 from gapath.recorders.mcap.messages import Messages
 
 TYPES = log_format.TYPES
+FORM = log_format.Form(log_format.LOG_VERSION, 100_000_000)
 counts = st.integers(0, 2**63)
 int32 = st.integers(-(2**31), 2**31 - 1)
 
@@ -172,7 +175,7 @@ def runs(draw):
             draw(st.floats()),
         )
     ]
-    steps = st.integers(0, 10**12)
+    steps = st.integers(0, 10**10)
     for _ in range(draw(st.integers(0, 3))):
         step, trial = draw(steps), draw(counts)
         events.append(TrialStarted(step, trial, draw(counts)))
@@ -204,7 +207,7 @@ def test_events_come_back(events, chunk_messages):
 @settings(max_examples=60, deadline=None)
 @given(runs())
 def test_every_message_is_what_rosbags_would_write(events):
-    messages = Messages(events[0])
+    messages = Messages(events[0], FORM)
     for event in events:
         for topic, _, data in messages.records(event):
             name = log_format.TOPICS[topic]
@@ -213,12 +216,12 @@ def test_every_message_is_what_rosbags_would_write(events):
 
 
 @given(
-    st.integers(0, 10**12),
+    st.integers(0, 10**18),
     arrays(np.float64, st.tuples(st.integers(0, 9), st.just(2)), elements=st.floats()),
 )
-def test_path_equals_one_built_pose_by_pose(step, metres):
+def test_path_equals_one_built_pose_by_pose(time, metres):
     make = {name.split("/")[-1]: cls for name, cls in TYPES.types.items()}
-    stamp = make["Time"](step // 1000, step % 1000 * 10**6)
+    stamp = make["Time"](*divmod(time, 10**9))
     header = TYPES.types["std_msgs/msg/Header"](stamp, "map")
     turn = make["Quaternion"](0.0, 0.0, 0.0, 1.0)
     poses = [
@@ -226,7 +229,50 @@ def test_path_equals_one_built_pose_by_pose(step, metres):
     ]
     name = "nav_msgs/msg/Path"
     slow = TYPES.serialize_cdr(TYPES.types[name](header, poses), name, little_endian=True)
-    assert cdr.path_cdr(step, metres) == bytes(slow)
+    assert cdr.path_cdr(time, metres) == bytes(slow)
+
+
+@pytest.mark.parametrize("version", log_format.EARLIER)
+@pytest.mark.parametrize("events", [example, example_drives])
+def test_earlier_logs_are_read_and_written_again(events, version, tmp_path):
+    form = log_format.earlier(version)
+    path = write_as(form, events(), tmp_path / "run.mcap")
+    told = [plain(logged(event)) for event in events()]
+    assert list(map(plain, mcap.read_events(path))) == told
+    found = mcap.compare(path, lambda _: iter(events()), mcap.USUAL)
+    assert (found.version, found.difference, found.byte) == (version, "", None)
+    with path.open("rb") as file:
+        reader = make_reader(file, validate_crcs=True)
+        summary = reader.get_summary()
+        assert not any(channel.metadata for channel in summary.channels.values())
+        assert "/tf_static" not in {channel.topic for channel in summary.channels.values()}
+        assert [each.name for each in reader.iter_attachments()] == ["map.npy", "optimal_path.npy"]
+        assert summary.statistics.message_end_time == events()[-1].step * 1_000_000
+
+
+@pytest.mark.parametrize("step_s", [1e-9, 0.05, 1.0])
+def test_a_step_takes_as_long_as_the_recorder_says(step_s, tmp_path):
+    form = log_format.Form(log_format.LOG_VERSION, round(step_s * 1e9))
+    path = write_as(form, example(), tmp_path / "run.mcap")
+    assert list(map(plain, mcap.read_events(path))) == [plain(event) for event in example()]
+    found = mcap.compare(path, lambda _: iter(example()), mcap.USUAL)
+    assert (found.difference, found.byte) == ("", None)
+    with path.open("rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary.statistics.message_end_time == example()[-1].step * form.step_ns
+
+
+@pytest.mark.parametrize("step_s", [0.0, -0.1, 1.5, float("nan"), float("inf"), 1e-10])
+def test_a_step_of_no_sensible_time_is_refused(step_s):
+    with pytest.raises(InputError, match=r"step_s: got .*, expected from 1e-9 to 1"):
+        mcap.Recorder(step_s=step_s)
+
+
+def test_log_times_end_where_ros_ends(tmp_path):
+    run, last = example()[0], example()[-1]
+    late = dataclasses.replace(last, step=2**31 * 10)
+    with pytest.raises(InputError, match=r"s of log time, expected less than 2147483648 s"):
+        write([run, late], tmp_path)
 
 
 @pytest.mark.parametrize("events", [example, example_drives])
@@ -256,7 +302,7 @@ def test_what_could_not_be_read_is_not_written(name, limit, found, tmp_path, mon
         write(example(trials=99), tmp_path)
 
 
-@pytest.mark.parametrize("recorder", [mcap.Recorder(), none.Recorder()])
+@pytest.mark.parametrize("recorder", [mcap.Recorder(step_s=0.1), none.Recorder()])
 def test_recorders_keep_the_protocol(recorder):
     assert isinstance(recorder, Recorder)
     recorder.abort()  # also before open

@@ -6,18 +6,21 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import zstandard
 from hypothesis import given
 from hypothesis import strategies as st
 from log_events import example, example_drives, write
 from mcap.data_stream import RecordBuilder
 from mcap.records import Attachment
 
+from gapath.errors import InputError
 from gapath.events import RunFinished
 from gapath.grid import GridMap
 from gapath.problem import Problem
 from gapath.recorders import mcap
 from gapath.recorders.mcap import description
 from gapath.recorders.mcap.file.stored import Stored
+from gapath.recorders.mcap.format import LOG_VERSION, Form, earlier
 from gapath.recorders.mcap.messages import Messages, count_first
 
 
@@ -55,11 +58,37 @@ def test_arrays_are_stored_as_numpy_saves_them(events):
         assert b"".join(stored.parts) == file.getvalue()
 
 
+@pytest.mark.parametrize("parts", [(b"",), (LARGE,), (b"ab", memoryview(LARGE), b"c")])
+def test_a_file_that_was_packed_comes_back(parts):
+    stored = Stored("map.npy", parts, "text", 3, 4)
+    packed = stored.packed()
+    assert packed.unpacked(stored.size) == stored
+    assert (packed.name, packed.size < 1000) == ("map.npy.zst" if stored.size else "map.npy", True)
+
+
+def test_what_packing_hardly_makes_smaller_stays_as_it_is():
+    noise = Stored("map.npy", (np.random.default_rng(1).bytes(2 << 20),))
+    assert noise.packed() is noise
+
+
+@pytest.mark.parametrize("size", [0, len(LARGE) - 1, len(LARGE) + 1])
+def test_a_packed_file_says_what_it_takes_and_no_more(size):
+    packed = Stored("map.npy", (LARGE,)).packed()
+    with pytest.raises(InputError, match=r"attachment map\.npy\.zst: got 3145728 bytes in it"):
+        packed.unpacked(len(LARGE) - 1)
+    head = bytearray(packed.parts[0])
+    at = bytes(head).index(len(LARGE).to_bytes(4, "little"))
+    head[at : at + 4] = size.to_bytes(4, "little")
+    with pytest.raises((InputError, zstandard.ZstdError)):
+        replace(packed, parts=(bytes(head),)).unpacked(1 << 30)
+
+
 @pytest.mark.parametrize("some", [slice(None), slice(0)])
 def test_the_first_messages_are_counted_without_making_them(some):
     run = example()[0]
     run = replace(run, optimal_path=run.optimal_path[some])
-    assert count_first(run) == sum(1 for _ in Messages(run).records(run))
+    for form in (Form(LOG_VERSION, 1), earlier("6")):
+        assert count_first(run, form) == sum(1 for _ in Messages(run, form).records(run))
 
 
 SIDE = 2000

@@ -28,6 +28,8 @@ from gapath.recorders.mcap import format as log_format
 from gapath.recorders.mcap.messages import Messages
 from gapath.store.settings import of_text
 
+FORM = log_format.Form(log_format.LOG_VERSION, 100_000_000)
+
 TYPES = log_format.TYPES
 OWN = "gapath_msgs/msg/"
 
@@ -65,7 +67,7 @@ def test_a_foreign_reader_understands_it(tmp_path):
     ends = [event for event in events if isinstance(event, TrialFinished)]
     assert len(found["/path"]) == sum(end.answer.feasible for end in ends)
     for end, (message, result) in zip(ends, found["/result"], strict=True):
-        assert message.log_time == end.step * 1_000_000
+        assert message.log_time == end.step * FORM.step_ns
         answer = end.answer
         assert (result.status, result.feasible) == (answer.status, answer.feasible)
         assert list(result.path) == answer.path.ravel().tolist()
@@ -82,13 +84,18 @@ def test_a_foreign_reader_understands_it(tmp_path):
     assert of_text(found["/trial_start"][0][1].settings) == run.settings
     assert found["/run_end"][0][1].found == 4
 
+    (frame,) = found["/tf_static"][0][1].transforms
+    assert (frame.header.frame_id, frame.child_frame_id) == ("world", "map")
+    turn, shift = frame.transform.rotation, frame.transform.translation
+    assert (turn.x, turn.y, turn.z, turn.w, shift.x, shift.y, shift.z) == (0, 0, 0, 1, 0, 0, 0)
+
 
 def test_a_field_that_can_be_passed_never_shows_as_an_obstacle(tmp_path):
     run = example()[0]
     grid = GridMap("almost", np.array([[0.0, 0.999, 1.0, 0.0]]))
     problem = Problem(grid, (0, 0), (3, 0))
     run = dataclasses.replace(run, problem=problem)
-    data = next(Messages(run).records(run)).data
+    data = next(Messages(run, FORM).records(run)).data
     assert TYPES.deserialize_cdr(data, "nav_msgs/msg/OccupancyGrid").data.tolist() == [
         0,
         99,
@@ -102,7 +109,7 @@ def decoded(path):
     with path.open("rb") as file:
         reader = make_reader(file, validate_crcs=True, decoder_factories=[DecoderFactory()])
         for _, channel, message, value in reader.iter_decoded_messages(log_time_order=False):
-            found.setdefault(channel.topic, []).append((message.log_time // 1_000_000, value))
+            found.setdefault(channel.topic, []).append((message.log_time // FORM.step_ns, value))
     return found
 
 
@@ -129,7 +136,7 @@ def test_a_foreign_reader_understands_drives(tmp_path):
         data = np.array(shown.data).reshape(shown.info.height, shown.info.width)
         assert data[::-1].tolist() == shown_at(step).tolist()
         stamp = shown.header.stamp
-        assert stamp.sec * 10**9 + stamp.nanosec == step * 1_000_000
+        assert stamp.sec * 10**9 + stamp.nanosec == step * FORM.step_ns
 
     assert [step for step, _ in found["/pose"]] == [event.step for event in steps]
     for event, (_, shown) in zip(steps, found["/pose"], strict=True):
@@ -180,7 +187,7 @@ def test_large_known_maps_are_shown_less_often(tmp_path):
     assert [np.count_nonzero(np.array(known.data) == 50) for _, known in shown] == [3, 7, 11, 12]
 
 
-@pytest.mark.parametrize(("topics", "events"), [(11, example), (16, example_drives)])
+@pytest.mark.parametrize(("topics", "events"), [(12, example), (17, example_drives)])
 def test_rerun_accepts_it(topics, events, tmp_path):
     checked = subprocess.run(
         [sys.executable, "-m", "rerun_cli", "mcap", "check", "--full", write(events(), tmp_path)],

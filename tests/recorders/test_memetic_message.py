@@ -5,13 +5,12 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from log_events import example, example_memetic, plain, write
+from log_events import example_memetic, plain, write
 
 from gapath.errors import InputError
 from gapath.events import Evolved
 from gapath.history.evolution import Evolution, Population
 from gapath.recorders import mcap
-from gapath.recorders.mcap import description
 from gapath.recorders.mcap import format as log_format
 from gapath.recorders.mcap.cdr import Record
 from gapath.recorders.mcap.memetic_message import memetic_run, read_memetic_run
@@ -50,15 +49,6 @@ def test_such_a_log_cut_anywhere_is_salvaged(tmp_path):
     assert len(seen) > 3
 
 
-@pytest.mark.parametrize("version", ["4", "5"])
-def test_earlier_logs_are_read(version, tmp_path, monkeypatch):
-    as_now = description.metadata
-    monkeypatch.setattr(description, "metadata", lambda run, _: as_now(run, version))
-    path = write(example(), tmp_path)
-    monkeypatch.undo()
-    assert list(map(plain, mcap.read_events(path))) == list(map(plain, example()))
-
-
 def many_vertices(individuals=8, vertices=2000, changes=400, epochs=400):
     """Long polygons, a vertex of one moved at each change; individual 0 stays the best."""
     rng = np.random.default_rng(4)
@@ -86,7 +76,7 @@ def many_vertices(individuals=8, vertices=2000, changes=400, epochs=400):
 
 def test_a_change_is_as_long_as_what_it_changed():
     event = many_vertices()
-    record = memetic_run(event, event.evolution.population)
+    record = memetic_run(event, event.evolution.population, 0)
     everything = event.evolution.population.vertices.nbytes + event.evolution.way_points.nbytes
     assert everything > 12_000_000
     assert len(record.data) < 8 * 2000 * 8 + 400 * (8 * 8 + 40) + 500 * 40
@@ -119,14 +109,14 @@ LIES = {
 def test_a_message_that_lies_is_refused(field, change, expected, tmp_path, monkeypatch):
     name = log_format.TOPICS["/memetic_run"]
     event = evolved()
-    data = memetic_run(event, event.evolution.population).data
+    data = memetic_run(event, event.evolution.population, 0).data
     message = TYPES.deserialize_cdr(data, name)
     changed = change(getattr(message, field))
     lie = dataclasses.replace(message, **{field: changed})
     record = bytes(TYPES.serialize_cdr(lie, name, little_endian=True))
     monkeypatch.setattr(
         "gapath.recorders.mcap.messages.memetic_run",
-        lambda *_: Record("/memetic_run", event.step, record),
+        lambda event, population, time: Record("/memetic_run", time, record),
     )
     path = write(example_memetic(), tmp_path)
     with pytest.raises(InputError, match=expected) as refused:
@@ -137,7 +127,7 @@ def test_a_message_that_lies_is_refused(field, change, expected, tmp_path, monke
 def test_a_population_that_took_nothing_in_is_refused():
     event = evolved()
     message = TYPES.deserialize_cdr(
-        memetic_run(event, event.evolution.population).data, log_format.TOPICS["/memetic_run"]
+        memetic_run(event, event.evolution.population, 0).data, log_format.TOPICS["/memetic_run"]
     )
     arrays = {n: v[:0] for n, v in vars(message).items() if isinstance(v, np.ndarray)}
     with pytest.raises(InputError, match="got no changes, expected at least one"):
@@ -147,7 +137,7 @@ def test_a_population_that_took_nothing_in_is_refused():
 def test_what_repeats_itself_without_end_is_not_put_together():
     """A few bytes a change would become a polygon of a thousand vertices each."""
     event = many_vertices(2, 1000, 10, 5)
-    record = memetic_run(event, event.evolution.population)
+    record = memetic_run(event, event.evolution.population, 0)
     message = TYPES.deserialize_cdr(record.data, log_format.TOPICS[record.topic])
     m = 50_000
     many = {
@@ -180,11 +170,11 @@ def test_an_evolution_at_odds_with_its_population_is_not_logged(change, expected
     event = evolved()
     lie, population = change(event.evolution, event.evolution.population)
     with pytest.raises(InputError, match=expected):
-        memetic_run(dataclasses.replace(event, evolution=lie), population)
+        memetic_run(dataclasses.replace(event, evolution=lie), population, 0)
 
 
 def test_what_could_not_be_read_is_not_written(monkeypatch):
     monkeypatch.setattr("gapath.recorders.mcap.memetic_message.MAX_CHUNK", 1 << 10)
     event = evolved()
     with pytest.raises(InputError, match="fewer epochs"):
-        memetic_run(event, event.evolution.population)
+        memetic_run(event, event.evolution.population, 0)

@@ -38,7 +38,7 @@ def two_blocks():
 
 def run(planner, folder, trials=2, recorded=(0, 1), problem=None):
     problem = problem or two_blocks()
-    recorders = [mcap.Recorder(), rerun.Recorder(trials=list(recorded))]
+    recorders = [mcap.Recorder(step_s=0.1), rerun.Recorder(trials=list(recorded))]
     settings = {"task": "plan", "planner.kind": "visibility_ga"}
     method = Method("visibility_ga")
     described = Run(

@@ -51,7 +51,7 @@ class TrialLog:
         run = Run(
             "logging", Method("ga1"), problem, PlanTask(planner), [], 0, BATCH, {}, folder, False
         )
-        self.recorder = mcap.Recorder()
+        self.recorder = mcap.Recorder(step_s=0.1)
         self.recorder.open(folder)
         self.recorder.record(run_started(run, shortest_path(problem)))
 

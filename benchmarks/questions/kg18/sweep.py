@@ -42,7 +42,7 @@ def _run(problem: Problem, name: str, trials: int, threads: int) -> Run:
 def measure(quick: bool) -> list[Row]:
     trials = 20 if quick else 1000
     rows: list[Row] = []
-    recorder = mcap.Recorder()
+    recorder = mcap.Recorder(step_s=0.1)
     _execute(_run(make_problem(MAPS[0]), SETTINGS[0], 2, 1), [recorder])  # start-up
     for problem in map(make_problem, MAPS):
         for name in SETTINGS:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from gapath.grid import Field, GridMap, Table
 from gapath.kernels.units import OBSTACLE, SCALE
 from gapath.problem import Answer, PlanStatus
-from gapath.recorders.mcap.format import FRAME, NS_PER_STEP, TOPICS, TYPES
+from gapath.recorders.mcap.format import FRAME, TOPICS, TYPES, WORLD
 
 ENCAPSULATION = b"\0\1\0\0"
 """Before every message: little-endian CDR."""
@@ -29,18 +29,18 @@ _STAMP = struct.Struct("<iI")
 
 
 class Record(NamedTuple):
-    """One message: topic, log time as a step, CDR bytes."""
+    """One message: topic, log time in nanoseconds, CDR bytes."""
 
     topic: str
-    step: int
+    time: int
     data: bytes
 
 
-def record(topic: str, step: int, *values: Any) -> Record:
+def record(topic: str, time: int, *values: Any) -> Record:
     """Make a message of its fields in order, by `rosbags`."""
     name = TOPICS[topic]
     message = TYPES.types[name](*values)
-    return Record(topic, step, bytes(TYPES.serialize_cdr(message, name, little_endian=True)))
+    return Record(topic, time, bytes(TYPES.serialize_cdr(message, name, little_endian=True)))
 
 
 def arrays_cdr(head: bytes, *arrays: NDArray[Any]) -> bytes:
@@ -90,9 +90,9 @@ def read_answer(message: Any) -> Answer:
     )
 
 
-def log_record(step: int, level: int, text: str) -> Record:
+def log_record(time: int, level: int, text: str) -> Record:
     """Say a sentence for people."""
-    return record("/log", step, _stamp(step), level, "gapath", text, "", "", 0)
+    return record("/log", time, _stamp(time), level, "gapath", text, "", "", 0)
 
 
 def in_metres(grid: GridMap, place: Field) -> tuple[float, float]:
@@ -102,7 +102,7 @@ def in_metres(grid: GridMap, place: Field) -> tuple[float, float]:
 
 
 def pose_record(
-    topic: str, step: int, metres: tuple[float, float], turn: tuple[float, float] = (0.0, 1.0)
+    topic: str, time: int, metres: tuple[float, float], turn: tuple[float, float] = (0.0, 1.0)
 ) -> Record:
     """Show a place as a pose.
 
@@ -110,8 +110,8 @@ def pose_record(
     ----------
     topic : str
         One of `TOPICS` with a PoseStamped.
-    step : int
-        Its time.
+    time : int
+        Its log time, in nanoseconds.
     metres : (float, float)
         The place.
     turn : (float, float)
@@ -123,22 +123,33 @@ def pose_record(
         The message.
     """
     pose = _POSE.pack(*metres, 0.0, 0.0, 0.0, *turn)
-    return Record(topic, step, ENCAPSULATION + _header_cdr(step) + pose)
+    return Record(topic, time, ENCAPSULATION + _header_cdr(time) + pose)
 
 
 _POSE = struct.Struct("<7d")
 
 
-def _header_cdr(step: int) -> bytes:
-    second, nanosecond = divmod(step * NS_PER_STEP, 10**9)
+def _header_cdr(time: int) -> bytes:
+    second, nanosecond = divmod(time, 10**9)
     return _STAMP.pack(second, nanosecond) + _FRAME_CDR
 
 
 _FRAME_CDR = COUNT.pack(len(FRAME) + 1) + FRAME.encode() + b"\0"
 
 
-def _stamp(step: int) -> Any:
-    return TYPES.types["builtin_interfaces/msg/Time"](*divmod(step * NS_PER_STEP, 10**9))
+def _stamp(time: int) -> Any:
+    return TYPES.types["builtin_interfaces/msg/Time"](*divmod(time, 10**9))
+
+
+def frames_record() -> Record:
+    """Give the tree of frames: the map's in the world's, both at one place."""
+    transform = TYPES.types["geometry_msgs/msg/Transform"](
+        TYPES.types["geometry_msgs/msg/Vector3"](0.0, 0.0, 0.0),
+        TYPES.types["geometry_msgs/msg/Quaternion"](0.0, 0.0, 0.0, 1.0),
+    )
+    header = TYPES.types["std_msgs/msg/Header"](_stamp(0), WORLD)
+    stamped = TYPES.types["geometry_msgs/msg/TransformStamped"](header, FRAME, transform)
+    return record("/tf_static", 0, [stamped])
 
 
 def per_cent(entries: Table) -> NDArray[np.int8]:
@@ -160,7 +171,7 @@ def per_cent(entries: Table) -> NDArray[np.int8]:
 
 
 def occupancy_grid_cdr(grid: GridMap, percent: NDArray[np.int8]) -> bytes:
-    """Serialise a ``nav_msgs/OccupancyGrid`` at step 0.
+    """Serialise a ``nav_msgs/OccupancyGrid`` at time 0.
 
     Parameters
     ----------
@@ -187,9 +198,9 @@ def occupancy_grid_cdr(grid: GridMap, percent: NDArray[np.int8]) -> bytes:
     return b"".join((head, COUNT.pack(percent.size), np.ascontiguousarray(percent[::-1]).data))
 
 
-def stamp_again(message: bytearray, step: int) -> None:
+def stamp_again(message: bytearray, time: int) -> None:
     """Change the time in a message's header."""
-    _STAMP.pack_into(message, len(ENCAPSULATION), *divmod(step * NS_PER_STEP, 10**9))
+    _STAMP.pack_into(message, len(ENCAPSULATION), *divmod(time, 10**9))
 
 
 _POSE_AND_NEXT_HEADER = np.dtype(
@@ -197,13 +208,13 @@ _POSE_AND_NEXT_HEADER = np.dtype(
 )
 
 
-def path_cdr(step: int, metres: NDArray[np.float64]) -> bytes:
+def path_cdr(time: int, metres: NDArray[np.float64]) -> bytes:
     """Serialise a ``nav_msgs/Path``, 30 times faster than pose by pose.
 
     Parameters
     ----------
-    step : int
-        Log time of the path's and every pose's header.
+    time : int
+        Log time, in nanoseconds, of the path's and every pose's header.
     metres : (n, 2) float64
         Positions; every orientation is the identity.
 
@@ -212,7 +223,7 @@ def path_cdr(step: int, metres: NDArray[np.float64]) -> bytes:
     bytes
         Little-endian CDR.
     """
-    header = _header_cdr(step)
+    header = _header_cdr(time)
     start = ENCAPSULATION + header + COUNT.pack(len(metres))
     if not len(metres):
         return start

@@ -105,7 +105,7 @@ def compare(
             file, other = (files.enter_context(opened(path)) for _ in range(2))
         log = _Log(path, file, limits)
         lost, twin = log.head.lost, _Twin(other)
-        writer = LogWriter(twin, log.version, lost)
+        writer = LogWriter(twin, log.head.form, lost)
         difference, trial, lacking = "", None, set[int]()
         for event in again(log.run):
             skipped = writer.skipped
@@ -149,7 +149,7 @@ class _Log:
                     raise InputError("metadata", f"{begins} before them", "a run's description")
                 begun.append(entry)
                 run = self.head.take(entry)
-        self.run, self.version = run, self.head.text["gapath_log_version"]
+        self.run, self.version = run, self.head.form.version
         self._rest = chain(begun, rest)
         self._next = next(self._rest, None)
         self._number = -1
@@ -190,7 +190,7 @@ class _Log:
             if isinstance(entry, Channel):
                 self._topics[entry.id] = entry.topic
         if comparable(old) != comparable(new):
-            return difference(old, new, self._topics)
+            return difference(old, new, self._topics, self.head.form.step_ns)
         if isinstance(old, Message):
             self.messages += 1
             self.topic, self._number = self._topics[old.channel_id], old.sequence

@@ -22,17 +22,14 @@ from gapath.events import RunStarted
 from gapath.grid import Field, GridMap
 from gapath.problem import CornerCutting, Problem
 from gapath.recorders.mcap.file.stored import Stored
+from gapath.recorders.mcap.format import EARLIER, LOG_VERSION, LONGEST_STEP, Form, earlier
 from gapath.scenario.listed import Queries
 from gapath.store.settings import of_text, text_of
 
-LOG_VERSION = "6"
-"""Raised whenever an older reader would misread a log."""
-
-_READ = ("4", "5", LOG_VERSION)
-"""A log of version 5 has settings of recorders and its chunks end elsewhere; one of version 4 has
-no population besides."""
+_READ = (*EARLIER, LOG_VERSION)
 
 _OF_RECORDERS = ("recorder.", "recorder[")
+_OF_RECORDERS_TOLD = ("4", "5")  # versions that have settings of recorders
 
 LOST = "gapath_lost"
 """Name of the metadata record of a log that was saved and lacks something."""
@@ -97,14 +94,14 @@ NOTHING = Lost()
 _MOST_LOST = 2000
 
 
-def metadata(run: RunStarted, version: str = LOG_VERSION) -> dict[str, str]:
+def metadata(run: RunStarted, form: Form) -> dict[str, str]:
     """Describe a run, all but its arrays.
 
     Parameters
     ----------
     run : RunStarted
         The run's first event.
-    version : str
+    form : Form
         The log's.
 
     Returns
@@ -114,7 +111,8 @@ def metadata(run: RunStarted, version: str = LOG_VERSION) -> dict[str, str]:
     """
     problem = run.problem
     text = {
-        "gapath_log_version": version,
+        "gapath_log_version": form.version,
+        **({"step_ns": str(form.step_ns)} if form.is_bag else {}),
         "experiment": run.experiment,
         "method": run.method,
         "task": run.task,
@@ -189,15 +187,14 @@ def run_started(text: Mapping[str, str], files: Sequence[Stored]) -> RunStarted:
         If the log has another version, differs from what was written, or an entry is missing or
         not what it must be.
     """
-    version = text.get("gapath_log_version")
-    require(version in _READ, "gapath_log_version", version, f"one of {', '.join(_READ)}")
+    version = form_of(text).version
     written, told = dict(text), partial(_told, text)
     digest = written.pop("sha256", None)
     require(_digest(written, files) == digest, "sha256", digest, "the digest of what is there")
     arrays, settings = _Arrays(files), told("settings", of_text)
     of_recorders = [name for name in settings if f"{name}.".startswith(_OF_RECORDERS)]
-    good = version != LOG_VERSION or not of_recorders
-    require(good, "settings", of_recorders[:1], f"none of recorders in version {LOG_VERSION}")
+    good = version in _OF_RECORDERS_TOLD or not of_recorders
+    require(good, "settings", of_recorders[:1], f"none of recorders in version {version}")
     return RunStarted(
         experiment=told("experiment"),
         method=told("method"),
@@ -217,6 +214,18 @@ def run_started(text: Mapping[str, str], files: Sequence[Stored]) -> RunStarted:
         optimal_path=arrays[OPTIMAL_PATH],
         optimal_cost=told("optimal_cost", float),
     )
+
+
+def form_of(text: Mapping[str, str]) -> Form:
+    """Read from the metadata what form a log has; raises InputError where it is none."""
+    version = text.get("gapath_log_version")
+    require(version in _READ, "gapath_log_version", version, f"one of {', '.join(_READ)}")
+    if version != LOG_VERSION:
+        return earlier(str(version))
+    step_ns = _told(text, "step_ns", int)
+    good = 1 <= step_ns <= LONGEST_STEP and text["step_ns"] == str(step_ns)
+    require(good, "metadata, step_ns", step_ns, f"a whole number from 1 to {LONGEST_STEP}")
+    return Form(LOG_VERSION, step_ns)
 
 
 def _told(text: Mapping[str, str], name: str, read: Callable[[str], Any] = str) -> Any:

@@ -65,9 +65,12 @@ class DriveMessages:
     ----------
     run : RunStarted
         The run's first event, for its map.
+    step_ns : int
+        Nanoseconds that a step counts.
     """
 
-    def __init__(self, run: RunStarted) -> None:
+    def __init__(self, run: RunStarted, step_ns: int) -> None:
+        self._step_ns = step_ns
         self._grid = grid = run.problem.map
         self._metres = lru_cache(maxsize=1 << 16)(partial(in_metres, grid))  # 11 us a field
         self._every = -(-grid.weights.size // _FIELDS_A_STEP)
@@ -93,28 +96,30 @@ class DriveMessages:
         """Forget the drive before, and log what the robot can do."""
         self._begin()
         able = (event.unknown_weight, event.sensor_range, event.step_limit)
-        yield Record("/drive_start", event.step, ENCAPSULATION + _BEGIN.pack(event.trial, *able))
+        time = event.step * self._step_ns
+        yield Record("/drive_start", time, ENCAPSULATION + _BEGIN.pack(event.trial, *able))
 
     def stepped(self, event: Stepped) -> Iterator[Record]:
         """Log a step: the known map if it changed, the pose, all of it exactly."""
-        step, fields = event.step, event.fields
+        step, time, fields = event.step, event.step * self._step_ns, event.fields
         if event.mode is Mode.RETURN and self._mode is not Mode.RETURN:
-            yield log_record(step, INFO, f"trial {event.trial}: going back, no path was found")
+            yield log_record(time, INFO, f"trial {event.trial}: going back, no path was found")
         self._mode = event.mode
         if len(fields):
             self._known[fields[:, 1], fields[:, 0]] = per_cent(event.entries)
             self._news = True
         if self._news and step - self._shown >= self._every:
             yield self._known_map(step)
-        yield pose_record("/pose", step, self._metres(event.place), self._turns[event.heading])
+        yield pose_record("/pose", time, self._metres(event.place), self._turns[event.heading])
         head = _STEP.pack(event.trial, *event.place, event.heading, event.mode)
         arrays = np.asarray(fields, _INT32), np.asarray(event.entries, _INT32)
-        yield Record("/drive_step", step, arrays_cdr(head, *arrays))
+        yield Record("/drive_step", time, arrays_cdr(head, *arrays))
 
     def _known_map(self, step: int) -> Record:
         self._news, self._shown = False, step
-        stamp_again(self._message, step)
-        return Record("/known_map", step, bytes(self._message))
+        time = step * self._step_ns
+        stamp_again(self._message, time)
+        return Record("/known_map", time, bytes(self._message))
 
     def called(self, event: Called) -> Iterator[Record]:
         """Log a call of a planner."""
@@ -122,23 +127,25 @@ class DriveMessages:
         numbers = answer_numbers(answer)
         head = _CALL.pack(event.trial, *numbers, event.index, answer.status, event.adopted)
         data = arrays_cdr(head, np.asarray(answer.path, _INT32)) + strings_cdr(event.part)
-        yield Record("/planner_call", event.step, data)
+        yield Record("/planner_call", event.step * self._step_ns, data)
 
     def paths_changed(self, event: PathsChanged) -> Iterator[Record]:
         """Log the current path and the way back, for viewers and exactly."""
+        time = event.step * self._step_ns
         for topic, path in (("/current_path", event.path), ("/past_path", event.past)):
-            yield Record(topic, event.step, path_cdr(event.step, self._grid.to_metres(path)))
+            yield Record(topic, time, path_cdr(time, self._grid.to_metres(path)))
         arrays = np.asarray(event.path, _INT32), np.asarray(event.past, _INT32)
-        yield Record("/paths", event.step, arrays_cdr(_TRIAL.pack(event.trial), *arrays))
+        yield Record("/paths", time, arrays_cdr(_TRIAL.pack(event.trial), *arrays))
 
     def finished(self, event: DriveFinished) -> Iterator[Record]:
         """Log the end of a drive, and what it knew then."""
         if self._news:
             yield self._known_map(event.step)
         text = f"trial {event.trial}: {event.ending} after {event.steps} steps"
-        yield log_record(event.step, INFO if event.outcome is Outcome.REACHED else WARN, text)
+        time = event.step * self._step_ns
+        yield log_record(time, INFO if event.outcome is Outcome.REACHED else WARN, text)
         data = ENCAPSULATION + _END.pack(event.trial, event.steps, event.stands, event.outcome)
-        yield Record("/drive_end", event.step, data)
+        yield Record("/drive_end", time, data)
 
 
 def _pairs(numbers: Any) -> NDArray[np.int32]:

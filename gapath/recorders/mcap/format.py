@@ -4,6 +4,9 @@ Standard messages are what other people's viewers draw; messages of our own pack
 ``gapath_msgs`` hold the numbers exactly, and only they are read back.
 """
 
+import json
+from typing import NamedTuple
+
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from gapath.kernels.units import OBSTACLE, SCALE
@@ -17,11 +20,52 @@ MAX_CHUNK = 1 << 28
 MAX_LOG = 1 << 34
 """Bytes that all chunks of a log may inflate to: 16 GiB."""
 
-NS_PER_STEP = 1_000_000
-"""Log time is the step index: a step counts as one millisecond."""
+LOG_VERSION = "7"
+"""Raised whenever an older reader would misread a log."""
+
+EARLIER = ("4", "5", "6")
+"""Versions that are read, too. In all of them a step is a millisecond, no topic is latched, there
+is no `/tf_static`, and maps are not compressed. A log of version 5 has settings of recorders and
+its chunks end elsewhere; one of version 4 has no population besides."""
+
+
+class Form(NamedTuple):
+    """What of a log's bytes does not follow from its events.
+
+    Parameters
+    ----------
+    version : str
+        The log's.
+    step_ns : int
+        Nanoseconds that a step counts: log time is the step index times these.
+    """
+
+    version: str
+    step_ns: int
+
+    @property
+    def is_bag(self) -> bool:
+        """Whether a log has what ROS 2 asks of a bag: latched topics and a tree of frames."""
+        return self.version == LOG_VERSION
+
+
+def earlier(version: str) -> Form:
+    """Give the form of an earlier version."""
+    return Form(version, 1_000_000)
+
+
+LONGEST_STEP = 10**9
+"""Nanoseconds that a step may count at most."""
+
+LAST_TIME = 2**31 * 10**9
+"""Log time ends here: seconds in a ROS message are of 32 bits with a sign."""
 
 FRAME = "map"
 """The metric frame of every standard message (REP 105)."""
+
+WORLD = "world"
+"""The frame above it in the tree of frames, at the same place: without a tree viewers of ROS know
+no frame at all."""
 
 _OWN = {
     "gapath_msgs/msg/TrialStart": """\
@@ -172,6 +216,7 @@ TOPICS = {
     "/start": "geometry_msgs/msg/PoseStamped",
     "/target": "geometry_msgs/msg/PoseStamped",
     "/optimal_path": "nav_msgs/msg/Path",
+    "/tf_static": "tf2_msgs/msg/TFMessage",
     "/log": "rcl_interfaces/msg/Log",
     "/trial_start": "gapath_msgs/msg/TrialStart",
     "/run_end": "gapath_msgs/msg/RunEnd",
@@ -193,6 +238,30 @@ TOPICS = {
 }
 """Message type of every topic; a log has a channel for those that its run wrote to."""
 
+LATCHED = frozenset(
+    ("/map", "/start", "/target", "/optimal_path", "/tf_static", "/path", "/known_map")
+) | {"/current_path", "/past_path"}
+"""Topics whose last message holds until the next one: who comes late still gets it."""
+
+_FOR_EVER = {"sec": 9223372036, "nsec": 854775807}
+_LATCHED_QOS = {
+    "history": "keep_last",
+    "depth": 1,
+    "reliability": "reliable",
+    "durability": "transient_local",
+    "deadline": _FOR_EVER,
+    "lifespan": _FOR_EVER,
+    "liveliness": "automatic",
+    "liveliness_lease_duration": _FOR_EVER,
+    "avoid_ros_namespace_conventions": False,
+}
+
+
+def offered_qos_profiles(topic: str) -> list[dict[str, object]]:
+    """Give a topic's quality of service as rosbag2 says it since its version 9; none: the usual."""
+    return [_LATCHED_QOS] if topic in LATCHED else []
+
+
 TYPES = get_typestore(Stores.ROS2_HUMBLE)
 for _name, _text in _OWN.items():
     TYPES.register(get_types_from_msg(_text, _name))
@@ -203,3 +272,9 @@ def schema(topic: str) -> bytes:
     name = TOPICS[topic]
     text = _OWN.get(name) or TYPES.generate_msgdef(name, ros_version=2)[0]
     return text.encode()
+
+
+def channel_metadata(topic: str, form: Form) -> dict[str, str]:
+    """Give what rosbag2 keeps with a topic: JSON, which is YAML."""
+    qos = offered_qos_profiles(topic) if form.is_bag else []
+    return {"offered_qos_profiles": json.dumps(qos)} if qos else {}

@@ -11,15 +11,26 @@ from typing import IO
 
 from mcap.records import Channel, Message, Metadata, Schema
 
-from gapath.errors import InputError
+from gapath.errors import InputError, require
 from gapath.events import Event, RunStarted
 from gapath.recorders.mcap import description
 from gapath.recorders.mcap.description import NOTHING
 from gapath.recorders.mcap.file.walk import Entry
 from gapath.recorders.mcap.file.write import Target, Writer
-from gapath.recorders.mcap.format import MAX_CHUNK, MAX_LOG, NS_PER_STEP, TOPICS, schema
+from gapath.recorders.mcap.format import (
+    LAST_TIME,
+    LOG_VERSION,
+    LONGEST_STEP,
+    MAX_CHUNK,
+    MAX_LOG,
+    TOPICS,
+    Form,
+    channel_metadata,
+    schema,
+)
 from gapath.recorders.mcap.messages import Messages, count_first
 from gapath.recorders.mcap.reader import read_prefix
+from gapath.recorders.mcap.ros.bag import METADATA, described
 from gapath.store.durable import new_file, part_of, publish
 
 FILE = "run.mcap"
@@ -39,8 +50,8 @@ class LogWriter:
     ----------
     file : Target
         Where to.
-    version : str
-        What the log calls itself: another version only to write an older log again.
+    form : Form
+        The log's: an earlier version only to write an older log again.
     lost : Lost
         What is not in the log, of one that was saved; `skipped` counts how much of it was not
         written so far.
@@ -49,10 +60,10 @@ class LogWriter:
     def __init__(
         self,
         file: Target,
-        version: str = description.LOG_VERSION,
+        form: Form,
         lost: description.Lost = NOTHING,
     ) -> None:
-        self._version, self._lost, self.skipped = version, lost, 0
+        self._form, self._lost, self.skipped = form, lost, 0
         self._writer = Writer(file)
         self._channels: dict[str, int] = {}
         self._schemas: dict[str, int] = {}
@@ -75,14 +86,18 @@ class LogWriter:
         Raises
         ------
         InputError
-            If the log would grow past half of what can be read.
+            If the log would grow past half of what can be read, or its times past their end.
         OSError
             If the file cannot be written.
         """
         if isinstance(event, RunStarted):
             yield from self.begin(event)
         assert self._messages is not None, "the run's first event comes first"
-        for topic, step, data in self._messages.records(event):
+        end = getattr(event, "step", 0) * self._form.step_ns
+        if end >= LAST_TIME:
+            most = f"less than {LAST_TIME // 10**9} s: fewer steps, or shorter ones (step_s)"
+            raise InputError("recorder.mcap", f"{end / 1e9:g} s of log time", most)
+        for topic, time, data in self._messages.records(event):
             self._bytes += len(data) + _MESSAGE_HEAD
             if len(data) > MAX_CHUNK // 2 or self._bytes > MAX_LOG // 2:
                 raise InputError(
@@ -91,7 +106,7 @@ class LogWriter:
                     f"at most {MAX_CHUNK // 2} and {MAX_LOG // 2}: a smaller map, or fewer epochs "
                     "or trials",
                 )
-            number, time = self._count, step * NS_PER_STEP
+            number = self._count
             self._count += 1
             if self._lost.has(number):
                 self.skipped += 1
@@ -102,15 +117,15 @@ class LogWriter:
 
     def begin(self, run: RunStarted) -> Iterator[Entry]:
         """Write the metadata and attachments that a run's first event comes to."""
-        self._messages = Messages(run)
-        self._head = count_first(run)
-        told = {description.NAME: description.metadata(run, self._version)}
+        self._messages = Messages(run, self._form)
+        self._head = count_first(run, self._form)
+        told = {description.NAME: description.metadata(run, self._form)}
         for name, text in (told | self._lost.metadata).items():
             entry = Metadata(name, text)
             self._writer.metadata(entry)
             yield entry
         for stored in description.attachments(run):
-            self._writer.stored(stored)
+            self._writer.stored(stored.packed() if self._form.is_bag else stored)
             yield stored
 
     def put(
@@ -127,7 +142,8 @@ class LogWriter:
                 self._writer.schema(described)
                 yield described
             self._channels[topic] = len(self._channels) + 1
-            channel = Channel(self._channels[topic], topic, "cdr", {}, self._schemas[name])
+            told = channel_metadata(topic, self._form)
+            channel = Channel(self._channels[topic], topic, "cdr", told, self._schemas[name])
             self._writer.channel(channel)
             yield channel
         message = Message(self._channels[topic], time, data, published, sequence)
@@ -153,16 +169,33 @@ class LogWriter:
         """Write the log's end."""
         self._writer.finish()
 
+    def bag(self, name: str) -> bytes:
+        """Describe the log, which is finished and has this name, as a bag of ROS 2."""
+        return described(name, self._writer.statistics, self._channels)
+
 
 @dataclass
 class Recorder:
-    """Writes ``run.mcap``."""
+    """Writes ``run.mcap``, and ``metadata.yaml``, with which the folder is a bag of ROS 2.
+
+    Parameters
+    ----------
+    step_s : float
+        Seconds that a step counts in the log, so in whatever plays it.
+    """
 
     records = True
 
+    step_s: float
+
     _path: Path = field(init=False, repr=False)
     _file: IO[bytes] | None = field(init=False, repr=False, default=None)
+    _bag: IO[bytes] = field(init=False, repr=False)
     _writer: LogWriter = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        good = 1 <= self.step_s * 1e9 <= LONGEST_STEP
+        require(good, "step_s", self.step_s, f"from 1e-9 to {LONGEST_STEP / 1e9:g}")
 
     def check(self, trials: int) -> None:
         """Accept every run; its size is bounded while it is written."""
@@ -170,12 +203,9 @@ class Recorder:
     def open(self, folder: str) -> None:
         """Start ``run.mcap.part`` in an existing folder."""
         self._path = Path(folder) / FILE
-        self._file = new_file(self._part)
-        self._writer = LogWriter(self._file)
-
-    @property
-    def _part(self) -> Path:
-        return part_of(self._path)
+        self._file = new_file(part_of(self._path))
+        self._bag = new_file(part_of(self._path.with_name(METADATA)))
+        self._writer = LogWriter(self._file, Form(LOG_VERSION, round(self.step_s * 1e9)))
 
     def recorded(self, folder: str) -> Iterator[Event]:
         """Give the whole events of a log that was cut short, which nobody writes any more.
@@ -207,14 +237,16 @@ class Recorder:
         """Finish the log, make it durable, and give it its name."""
         assert self._file is not None, "open comes first"
         self._writer.finish()
-        self._file.flush()
-        os.fsync(self._file.fileno())
-        self._file.close()
-        publish(self._part, self._path)
-        return [self._path.name]
+        self._bag.write(self._writer.bag(FILE))
+        for file, path in ((self._file, self._path), (self._bag, self._path.with_name(METADATA))):
+            with file:
+                file.flush()
+                os.fsync(file.fileno())
+            publish(part_of(path), path)
+        return [FILE, METADATA]
 
     def abort(self) -> None:
         """Leave ``run.mcap.part`` with all that was recorded, for `salvage`."""
         if self._file is not None and not self._file.closed:
-            with self._file:
+            with self._file, self._bag:
                 self._writer.flush()

@@ -19,7 +19,7 @@ _HEAD = struct.Struct("<QQI")
 _INT32, _FLOAT64 = np.dtype("<i4"), np.dtype("<f8")
 
 
-def memetic_run(event: Evolved, population: Population) -> Record:
+def memetic_run(event: Evolved, population: Population, time: int) -> Record:
     """Write an evolution that has a population.
 
     Parameters
@@ -28,6 +28,8 @@ def memetic_run(event: Evolved, population: Population) -> Record:
         The event.
     population : Population
         Its evolution's.
+    time : int
+        Its log time, in nanoseconds.
 
     Returns
     -------
@@ -59,7 +61,7 @@ def memetic_run(event: Evolved, population: Population) -> Record:
         *(np.asarray(each, _FLOAT64) for each in (*floats, population.shares)),
     )
     names = COUNT.pack(len(population.names)) + strings_cdr(*population.names, evolution.genotype)
-    return Record(TOPIC, event.step, data + names)
+    return Record(TOPIC, time, data + names)
 
 
 _FEWER = f"at most {MAX_CHUNK // 2} bytes of vertices: fewer epochs"

@@ -34,6 +34,7 @@ from gapath.recorders.mcap.cdr import (
     Record,
     answer_numbers,
     arrays_cdr,
+    frames_record,
     in_metres,
     log_record,
     occupancy_grid_cdr,
@@ -44,7 +45,7 @@ from gapath.recorders.mcap.cdr import (
     record,
     strings_cdr,
 )
-from gapath.recorders.mcap.format import TOPICS, TYPES
+from gapath.recorders.mcap.format import TOPICS, TYPES, Form
 from gapath.recorders.mcap.memetic_message import TOPIC as MEMETIC_RUN
 from gapath.recorders.mcap.memetic_message import memetic_run, read_memetic_run
 from gapath.store.settings import text_of
@@ -64,16 +65,18 @@ class Messages:
     ----------
     run : RunStarted
         The run's first event, for its map and settings.
+    form : Form
+        The log's.
     """
 
-    def __init__(self, run: RunStarted) -> None:
-        self._run = run
+    def __init__(self, run: RunStarted, form: Form) -> None:
+        self._run, self._form = run, form
         self._settings = text_of(run.settings)
 
     @cached_property
     def _drive(self) -> drive_messages.DriveMessages:
         """Of drives alone: the known map takes four bytes a field."""
-        return drive_messages.DriveMessages(self._run)
+        return drive_messages.DriveMessages(self._run, self._form.step_ns)
 
     def records(self, event: Event) -> Iterator[Record]:
         """Turn an event into the messages that log it.
@@ -88,23 +91,24 @@ class Messages:
         Record
             Messages in the order of the log.
         """
+        time = getattr(event, "step", 0) * self._form.step_ns
         match event:
             case RunStarted():
-                yield from _run_started(event)
-            case TrialStarted(step, trial, seed):
+                yield from _run_started(event, self._form)
+            case TrialStarted(_, trial, seed):
                 texts = strings_cdr(self._run.method, self._settings)
-                yield Record("/trial_start", step, ENCAPSULATION + _TRIAL.pack(trial, seed) + texts)
+                yield Record("/trial_start", time, ENCAPSULATION + _TRIAL.pack(trial, seed) + texts)
             case Posed():
-                yield from _posed(event, self._run.problem.map)
+                yield from _posed(event, time, self._run.problem.map)
             case Evolved():
                 population = event.evolution.population
-                yield memetic_run(event, population) if population else _ga_run(event)
-            case Surveyed(step, trial, (obstacles, block, points, edges)):
+                yield memetic_run(event, population, time) if population else _ga_run(event, time)
+            case Surveyed(_, trial, (obstacles, block, points, edges)):
                 picture = np.packbits(obstacles)
                 fields = (picture, points.ravel(), edges.ravel())
-                yield record("/graph", step, trial, *obstacles.shape, block, *fields)
+                yield record("/graph", time, trial, *obstacles.shape, block, *fields)
             case TrialFinished():
-                yield from _trial_finished(event, self._run.problem.map)
+                yield from _trial_finished(event, time, self._run.problem.map)
             case DriveStarted():
                 yield from self._drive.started(event)
             case Stepped():
@@ -115,20 +119,20 @@ class Messages:
                 yield from self._drive.paths_changed(event)
             case DriveFinished():
                 yield from self._drive.finished(event)
-            case RunFinished(step, trials, found):
-                yield log_record(step, INFO, f"run finished: {found} of {trials} trials succeeded")
-                yield record("/run_end", step, trials, found)
+            case RunFinished(_, trials, found):
+                yield log_record(time, INFO, f"run finished: {found} of {trials} trials succeeded")
+                yield record("/run_end", time, trials, found)
             case _:
                 kind = type(event).__name__
                 raise InputError("recorder.mcap", f"an event {kind}", "one of gapath.events")
 
 
-def count_first(run: RunStarted) -> int:
+def count_first(run: RunStarted, form: Form) -> int:
     """Count the messages that a run's first event comes to, without making them."""
-    return 4 + (len(run.optimal_path) > 0)
+    return 4 + (len(run.optimal_path) > 0) + form.is_bag
 
 
-def _run_started(run: RunStarted) -> Iterator[Record]:
+def _run_started(run: RunStarted, form: Form) -> Iterator[Record]:
     problem, grid = run.problem, run.problem.map
     shown = np.empty(grid.weights.shape, dtype=np.int8)
     for row, entries in zip(shown, grid.table, strict=True):  # numbers between take 8 times as much
@@ -138,6 +142,8 @@ def _run_started(run: RunStarted) -> Iterator[Record]:
     yield pose_record("/target", 0, in_metres(grid, problem.target))
     if len(run.optimal_path):
         yield Record("/optimal_path", 0, path_cdr(0, grid.to_metres(run.optimal_path)))
+    if form.is_bag:
+        yield frames_record()
     text = (
         f"run started: {run.experiment}, {run.method} on {grid.name} "
         f"from {problem.told}, seed {run.seed}, {run.trials} trials"
@@ -145,17 +151,17 @@ def _run_started(run: RunStarted) -> Iterator[Record]:
     yield log_record(0, INFO, text)
 
 
-def _posed(event: Posed, grid: GridMap) -> Iterator[Record]:
-    step, path = event.step, event.optimal_path
-    yield pose_record("/start", step, in_metres(grid, event.start))
-    yield pose_record("/target", step, in_metres(grid, event.target))
-    yield Record("/optimal_path", step, path_cdr(step, grid.to_metres(path)))
+def _posed(event: Posed, time: int, grid: GridMap) -> Iterator[Record]:
+    path = event.optimal_path
+    yield pose_record("/start", time, in_metres(grid, event.start))
+    yield pose_record("/target", time, in_metres(grid, event.target))
+    yield Record("/optimal_path", time, path_cdr(time, grid.to_metres(path)))
     ends = (*event.start, *event.target)
     head = _QUERY.pack(event.trial, event.optimal_cost, event.number, *ends)
-    yield Record("/query", step, arrays_cdr(head, np.asarray(path, _INT32)))
+    yield Record("/query", time, arrays_cdr(head, np.asarray(path, _INT32)))
 
 
-def _ga_run(event: Evolved) -> Record:
+def _ga_run(event: Evolved, time: int) -> Record:
     best, mean, chromosomes, way_points, genotype, _ = event.evolution
     head = _GA_RUN.pack(event.trial, event.call, chromosomes.shape[1], way_points.shape[1])
     rows = (
@@ -164,18 +170,18 @@ def _ga_run(event: Evolved) -> Record:
         np.asarray(best, _FLOAT64),
         np.asarray(mean, _FLOAT64),
     )
-    return Record("/ga_run", event.step, arrays_cdr(head, *rows) + strings_cdr(genotype))
+    return Record("/ga_run", time, arrays_cdr(head, *rows) + strings_cdr(genotype))
 
 
-def _trial_finished(event: TrialFinished, grid: GridMap) -> Iterator[Record]:
-    step, answer = event.step, event.answer
+def _trial_finished(event: TrialFinished, time: int, grid: GridMap) -> Iterator[Record]:
+    answer = event.answer
     if len(answer.path):
-        yield Record("/path", step, path_cdr(step, grid.to_metres(answer.path)))
+        yield Record("/path", time, path_cdr(time, grid.to_metres(answer.path)))
     if not answer.feasible:
-        yield log_record(step, WARN, f"trial {event.trial}: {answer.status.sentence}")
+        yield log_record(time, WARN, f"trial {event.trial}: {answer.status.sentence}")
     numbers = answer_numbers(answer)
     head = _RESULT.pack(event.trial, *numbers, answer.status, answer.feasible)
-    yield Record("/result", step, arrays_cdr(head, np.asarray(answer.path, _INT32)))
+    yield Record("/result", time, arrays_cdr(head, np.asarray(answer.path, _INT32)))
 
 
 def event(topic: str, step: int, data: bytes) -> Event | None:

@@ -17,7 +17,7 @@ from gapath.problem import Answer
 from gapath.recorders.mcap import description
 from gapath.recorders.mcap.file.stored import Stored
 from gapath.recorders.mcap.file.walk import LARGE, Limits, Walk, opened
-from gapath.recorders.mcap.format import NS_PER_STEP
+from gapath.recorders.mcap.format import Form
 from gapath.recorders.mcap.messages import event
 
 WHOLE = "a whole log of gapath"
@@ -33,9 +33,13 @@ class Head:
     ----------
     text : dict of str to str
         The metadata.
+    form : Form
+        The log's, once its metadata are there.
     lost : Lost
         What is not in the log, of one that was saved.
     """
+
+    form: Form
 
     def __init__(self) -> None:
         self.text: dict[str, str] = {}
@@ -51,7 +55,7 @@ class Head:
             last = name == description.OPTIMAL_PATH
             return description.run_started(self.text, [*files.values()]) if last else None
         if entry.name == description.NAME:
-            self.text = entry.metadata
+            self.text, self.form = entry.metadata, description.form_of(entry.metadata)
         elif entry.name == description.LOST:
             self.lost = description.Lost.of(entry.metadata)
         return None
@@ -209,7 +213,7 @@ def _events(
             count = entry.sequence + 1
             topic = topics[entry.channel_id]
             if wanted(topic):
-                found = event(topic, entry.log_time // NS_PER_STEP, entry.data)
+                found = event(topic, entry.log_time // head.form.step_ns, entry.data)
                 if found is not None and getattr(found, "trial", None) not in head.lost.trials:
                     yield found
         elif isinstance(entry, Channel):

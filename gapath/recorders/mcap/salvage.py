@@ -25,7 +25,7 @@ from gapath.recorders.mcap.file.walk import (
     inside,
     opened,
 )
-from gapath.recorders.mcap.format import NS_PER_STEP, TOPICS
+from gapath.recorders.mcap.format import TOPICS
 from gapath.recorders.mcap.log import FILE, LogWriter
 from gapath.recorders.mcap.messages import event
 from gapath.recorders.mcap.reader import BEGUN, Head, read_events, refusing
@@ -97,10 +97,10 @@ def _saved(path: str | Path, whole: Path, limits: Limits) -> Saved:
                 head, run, place = _begin(file, limits)
             except Ended as error:
                 raise InputError("log", "nothing whole in it", BEGUN) from error
-            lost, count = _lost(file, place, limits, run.trials)
+            lost, count = _lost(file, place, limits, run.trials, head.form.step_ns)
             require(count > 0, "messages", "nothing whole in it", "at least a chunk that is")
         with whole.open("wb") as new:
-            writer = LogWriter(new, head.text["gapath_log_version"], lost)
+            writer = LogWriter(new, head.form, lost)
             deque(writer.begin(run), maxlen=0)
             for topic, m in _messages(file, place, limits):
                 for _ in writer.put(topic, m.log_time, m.data, m.publish_time, m.sequence):
@@ -195,7 +195,9 @@ def _chunk_at(file: IO[bytes], begin: int, most: int) -> bytes:
     return head + file.read(length) if fits else b""
 
 
-def _lost(file: IO[bytes], place: int, limits: Limits, trials: int) -> tuple[Lost, int]:
+def _lost(
+    file: IO[bytes], place: int, limits: Limits, trials: int, step_ns: int
+) -> tuple[Lost, int]:
     """Tell which messages are missing, which trials lack some, and how many messages there are."""
     gaps: list[tuple[int, int]] = []
     whole: set[int] = set()
@@ -206,7 +208,7 @@ def _lost(file: IO[bytes], place: int, limits: Limits, trials: int) -> tuple[Los
             gaps.append((count, message.sequence - 1))
             current = None
         count = message.sequence + 1
-        found = event(topic, message.log_time // NS_PER_STEP, message.data)
+        found = event(topic, message.log_time // step_ns, message.data)
         trial = trials - 1 if isinstance(found, RunFinished) else getattr(found, "trial", -1)
         last = max(last, trial)
         if isinstance(found, TrialStarted):

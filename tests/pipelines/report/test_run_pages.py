@@ -179,7 +179,7 @@ def bent(outputs, make_run, trials=9):
         shortest_path(problem).path,
         11.0,
     )
-    recorder, step, told = Recorder(), 0, []
+    recorder, step, told = Recorder(step_s=0.1), 0, []
     recorder.open(str(run))
     recorder.record(start)
     for trial in range(trials):

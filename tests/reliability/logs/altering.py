@@ -15,7 +15,7 @@ from mcap.records import Attachment, Channel, Header, Message, Metadata, Schema
 from taking_apart import Parts
 
 from gapath.recorders.mcap import description
-from gapath.recorders.mcap.format import NS_PER_STEP, TOPICS, TYPES
+from gapath.recorders.mcap.format import TOPICS, TYPES
 
 
 class Altered(NamedTuple):
@@ -117,6 +117,7 @@ def _of_metadata(entry):
 _RELATED = {
     "method": ("/log.msg: run started",),  # a name of one's own must be the same everywhere
     "start": ("map.start",),
+    "step_ns": ("message",),  # the whole log goes at another pace
 }
 
 
@@ -212,7 +213,7 @@ def _of_topics(parts):
                 ("bytes emptied", [replace(entry, data=b"")]),
                 ("bytes longer", [replace(entry, data=entry.data + b"\0")]),
                 ("within the step", [replace(entry, log_time=entry.log_time + 1)]),
-                ("a step later", [replace(entry, log_time=entry.log_time + NS_PER_STEP)]),
+                ("a step later", [replace(entry, log_time=entry.log_time + STEP_NS)]),
                 ("published later", [replace(entry, publish_time=entry.publish_time + 1)]),
                 ("sequence", [replace(entry, sequence=entry.sequence + 1)]),
                 ("removed, a gap left", []),
@@ -301,3 +302,4 @@ def telling(parts, name, value, trials=True):
 
 
 TRIAL = "/trial_start"
+STEP_NS = 100_000_000

@@ -1,13 +1,17 @@
 """Logs taken apart and put together again by the MCAP library, every checksum right."""
 
+from collections import deque
+from dataclasses import replace
 from typing import NamedTuple
 
 from mcap.records import Attachment, Channel, Chunk, DataEnd, Header, Message, Metadata, Schema
 from mcap.stream_reader import StreamReader, breakup_chunk
 from mcap.writer import Writer
 
-from gapath.recorders.mcap import description
+from gapath.recorders.mcap import description, read_events
 from gapath.recorders.mcap.file.stored import Stored
+from gapath.recorders.mcap.format import earlier
+from gapath.recorders.mcap.log import LogWriter
 
 
 class Parts(NamedTuple):
@@ -28,9 +32,22 @@ def taken_apart(path):
                 count += sum(isinstance(entry, Message) for entry in inside)
                 ends.add(count)
                 entries += inside
-            elif isinstance(record, Header | Metadata | Attachment):
+            elif isinstance(record, Attachment):
+                stored = Stored(record.name, (record.data,)).unpacked(1 << 28)
+                entries.append(replace(record, name=stored.name, data=stored.parts[0]))
+            elif isinstance(record, Header | Metadata):
                 entries.append(record)
     return Parts(entries, ends)
+
+
+def older(path, version, output):
+    """Write a log's events as a log of an earlier version."""
+    with output.open("wb") as file:
+        writer = LogWriter(file, earlier(version))
+        for event in read_events(path):
+            deque(writer.write(event), maxlen=0)
+        writer.finish()
+    return output
 
 
 def put_together(parts, path, **options):
@@ -49,8 +66,9 @@ def put_together(parts, path, **options):
                         text["sha256"] = description._digest(text, files.values())
                     writer.add_metadata(entry.name, text)
                 case Attachment():
-                    times = entry.create_time, entry.log_time
-                    writer.add_attachment(*times, entry.name, entry.media_type, entry.data)
+                    times, stored = (entry.create_time, entry.log_time), files[entry.name].packed()
+                    data = b"".join(stored.parts)
+                    writer.add_attachment(*times, stored.name, entry.media_type, data)
                 case Schema():
                     number = writer.register_schema(entry.name, entry.encoding, entry.data)
                     schemas[entry.id] = number

@@ -223,7 +223,7 @@ def test_a_log_that_breaks_off_is_interrupted(short, tmp_path, capsys):
 def test_a_log_under_way_or_ended_early_is_interrupted(short, tmp_path, capsys):
     events, folder = list(mcap.read_events(short[0])), tmp_path / "under way"
     folder.mkdir()
-    recorder = mcap.Recorder()
+    recorder = mcap.Recorder(step_s=0.1)
     recorder.open(str(folder))
     for event in events[:12]:
         recorder.record(event)

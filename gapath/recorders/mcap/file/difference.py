@@ -11,7 +11,7 @@ from mcap.records import Channel, Message, Metadata, Schema
 
 from gapath.recorders.mcap.file.stored import Stored
 from gapath.recorders.mcap.file.walk import Entry
-from gapath.recorders.mcap.format import NS_PER_STEP, TOPICS, TYPES
+from gapath.recorders.mcap.format import TOPICS, TYPES
 
 
 def comparable(entry: Entry | None) -> object:
@@ -26,7 +26,9 @@ def _told(metadata: Metadata) -> list[tuple[str, str]]:
     return [(k, "" if k == "sha256" else v) for k, v in metadata.metadata.items()]
 
 
-def difference(old: Entry | None, new: Entry | None, topics: Mapping[int, str]) -> str:
+def difference(
+    old: Entry | None, new: Entry | None, topics: Mapping[int, str], step_ns: int
+) -> str:
     """Name the first thing in which two entries differ.
 
     Parameters
@@ -35,16 +37,18 @@ def difference(old: Entry | None, new: Entry | None, topics: Mapping[int, str]) 
         What the log has, and what it would be; None for nothing.
     topics : mapping of int to str
         The channels' topics.
+    step_ns : int
+        Nanoseconds that a step counts.
 
     Returns
     -------
     str
         What it is, the field, and both values.
     """
-    where = named(old, topics)
+    where = named(old, topics, step_ns)
     channels = {getattr(entry, "channel_id", 0) for entry in (old, new)}
     if old is None or new is None or type(old) is not type(new) or len(channels) > 1:
-        return _both("", where, named(new, topics))
+        return _both("", where, named(new, topics, step_ns))
     if isinstance(old, Metadata) and isinstance(new, Metadata):
         return _entry(old, new, where)
     names = [each.name for each in dataclasses.fields(old) if each.name not in ("data", "parts")]
@@ -69,12 +73,12 @@ def _entry(old: Metadata, new: Metadata, where: str) -> str:
     return ""
 
 
-def named(entry: Entry | None, topics: Mapping[int, str]) -> str:
-    """Say what an entry is."""
+def named(entry: Entry | None, topics: Mapping[int, str], step_ns: int = 1) -> str:
+    """Say what an entry is; of messages their step, whose length must be told."""
     match entry:
         case Message():
             topic = topics.get(entry.channel_id, f"channel {entry.channel_id}")
-            return f"message {entry.sequence}, step {entry.log_time / NS_PER_STEP:g}, {topic}"
+            return f"message {entry.sequence}, step {entry.log_time / step_ns:g}, {topic}"
         case Stored():
             return f"attachment {entry.name}"
         case Metadata() | Schema():

@@ -3,15 +3,20 @@
 import struct
 import zlib
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import zip_longest
 from typing import TypeAlias
 
+import zstandard
 from mcap.opcode import Opcode
+
+from gapath.errors import require
 
 Bytes: TypeAlias = bytes | memoryview
 
 _OCTETS = "application/octet-stream"
+_ZSTD = ".zst"
+_WORTH = 4  # a file is packed that gets smaller by this factor
 _BLOCK = 1 << 20
 _TEXT = struct.Struct("<I")
 
@@ -55,6 +60,33 @@ class Stored:
             crc = zlib.crc32(part, crc)
             yield part
         yield struct.pack("<I", crc)
+
+    def packed(self) -> "Stored":
+        """Give it compressed by zstd, its name ending in ``.zst``; itself if that is hardly less.
+
+        Arrays of any numbers stay as they are, so that a map of them is not held twice.
+        """
+        packer, most = zstandard.ZstdCompressor().compressobj(size=self.size), self.size // _WORTH
+        data = bytearray()
+        for part in self.parts:
+            for begin in range(0, len(part), _BLOCK):
+                data += packer.compress(part[begin : begin + _BLOCK])
+                if len(data) > most:
+                    return self
+        data += packer.flush()
+        name = self.name + _ZSTD
+        return replace(self, name=name, parts=(bytes(data),)) if len(data) <= most else self
+
+    def unpacked(self, most: int) -> "Stored":
+        """Give what was packed, of at most so many bytes; raises InputError or ZstdError."""
+        if not self.name.endswith(_ZSTD):
+            return self
+        (data,) = self.parts
+        size = zstandard.frame_content_size(data)
+        fits = 0 < size <= most
+        require(fits, f"attachment {self.name}", f"{size} bytes in it", f"at most {most}")
+        content = zstandard.ZstdDecompressor().decompress(data, allow_extra_data=False)
+        return replace(self, name=self.name.removesuffix(_ZSTD), parts=(content,))
 
     def blocks(self) -> Iterator[bytes]:
         """Give the content in blocks of one size, however it lies in pieces."""

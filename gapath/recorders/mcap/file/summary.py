@@ -68,6 +68,11 @@ class Summary:
         count: int = self._counts.message_count
         return count
 
+    @property
+    def statistics(self) -> Statistics:
+        """Counts and times of all that was taken so far."""
+        return self._counts
+
     def _add(self, opcode: int, record: McapRecord) -> None:
         self._groups[opcode][1].extend(encoded(record))
 

@@ -215,7 +215,9 @@ class Walk:
         for piece in pieces:
             self._crc = zlib.crc32(piece, self._crc)
         self._summary.attachment(offset, length, stored)
-        return stored
+        unpacked = stored.unpacked(most - self._attached + stored.size)
+        self._attached += unpacked.size - stored.size
+        return unpacked
 
     def _opened(self, offset: int, data: bytes) -> Iterator[Entry]:
         chunk = chunk_of(data, self._limits)

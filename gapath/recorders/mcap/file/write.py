@@ -6,7 +6,17 @@ from typing import Protocol
 
 import zstandard
 from mcap.opcode import Opcode
-from mcap.records import Channel, Chunk, DataEnd, Header, McapRecord, Message, Metadata, Schema
+from mcap.records import (
+    Channel,
+    Chunk,
+    DataEnd,
+    Header,
+    McapRecord,
+    Message,
+    Metadata,
+    Schema,
+    Statistics,
+)
 
 from gapath.recorders.mcap.file.stored import Bytes, Stored
 from gapath.recorders.mcap.file.summary import MAGIC, Place, Summary, encoded
@@ -107,6 +117,11 @@ class Writer:
             self._put(record)
             self._put(follows)
         self._file.flush()
+
+    @property
+    def statistics(self) -> Statistics:
+        """What has been written: whole chunks alone."""
+        return self._summary.statistics
 
     def finish(self) -> None:
         """Write the log's end."""
