@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from gapath.errors import InputError, require
 from gapath.kernels.table import fill_parts, fill_table, least_three
@@ -265,6 +265,35 @@ class GridMap(Shown):
         metres[:, 1] = y + right * sin + up * cos
         return metres
 
+    def to_fields(self, metres: ArrayLike) -> NDArray[np.int32]:
+        """Give the fields in which points lie: `to_metres` the other way.
+
+        Parameters
+        ----------
+        metres : (n, 2) array_like
+            Points as (x, y) in metres, in the frame that `origin` is given in.
+
+        Returns
+        -------
+        (n, 2) int32
+            Fields as (x, y); of a point beyond the map's border one beyond it, too.
+
+        Raises
+        ------
+        InputError
+            If they are no points of two finite numbers.
+        """
+        points = np.asarray(metres, dtype=np.float64)
+        good = points.ndim == 2 and points.shape[1] == 2 and bool(np.isfinite(points).all())
+        require(good, "metres", metres, "points (x, y) of two finite numbers")
+        x, y, yaw = self.origin
+        right, up = (points - (x, y)).T / self.resolution
+        if yaw != 0.0:
+            cos, sin = math.cos(yaw), math.sin(yaw)
+            right, up = right * cos + up * sin, up * cos - right * sin
+        fields = np.stack([np.floor(right), self.rows - 1 - np.floor(up)], axis=1)
+        return fields.clip(-1, MAX_SIDE).astype(np.int32)
+
     def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Draw the map, and its start and target where it has them (`Shown.plot`)."""
         from gapath.pictures.board import draw_map, mark_ends
@@ -291,59 +320,3 @@ class GridMap(Shown):
         offset = np.array([0.5, self.rows - 0.5]) * self.resolution
         corner = np.array(self.origin[:2] if self.origin[2] == 0.0 else (0.0, 0.0))
         return np.array([self.resolution, -self.resolution]), offset + corner
-
-
-def other_reading(grid: PlanningMap, obstacles: NDArray[np.bool_], places: list[Field]) -> str:
-    """Suggest to read a picture the other way round, if all of some places are free then.
-
-    Parameters
-    ----------
-    grid : PlanningMap
-        The map.
-    obstacles : (rows, cols) bool
-        What would be an obstacle, were the picture inverted.
-    places : list of (x, y)
-        Fields on it.
-
-    Returns
-    -------
-    str
-        The end of a sentence; empty if the map is no picture, or a place is blocked then, too.
-    """
-    inverted = grid.inverted if isinstance(grid, GridMap) else None
-    if inverted is None or any(obstacles[y, x] for x, y in places):
-        return ""
-    now, then = ("dark", "bright") if inverted else ("bright", "dark")
-    setting = f"map.invert={str(not inverted).lower()}"
-    return f"; or, if {then} is an obstacle here, not {now}, map=image and {setting}"
-
-
-def nearest_free(obstacles: NDArray[np.bool_], place: Field) -> Field | None:
-    """Find the free field nearest to a place.
-
-    Parameters
-    ----------
-    obstacles : (rows, cols) bool
-        True where a field cannot be passed.
-    place : (x, y)
-        A field.
-
-    Returns
-    -------
-    (x, y) or None
-        The nearest by the Euclidean distance, of several the first from top and left; None if
-        nothing is free.
-    """
-    rows, cols = obstacles.shape
-    reach, found = 1, False
-    while True:
-        top, left = max(place[1] - reach, 0), max(place[0] - reach, 0)
-        window = obstacles[top : place[1] + reach + 1, left : place[0] + reach + 1]
-        if found:  # this window is twice as wide as one with a free field: none beyond is nearer
-            y, x = np.nonzero(~window)
-            first = int(np.argmin((x + left - place[0]) ** 2 + (y + top - place[1]) ** 2))
-            return int(x[first]) + left, int(y[first]) + top
-        found = not window.all()
-        if not found and reach > max(rows, cols):
-            return None
-        reach *= 2

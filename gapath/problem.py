@@ -11,12 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import InputError, one_of
-from gapath.grid import Field, GridMap, PlanningMap, nearest_free, other_reading
+from gapath.grid import Field, GridMap, PlanningMap
 from gapath.history.evolution import Evolution
 from gapath.history.graph import Graph
 from gapath.kernels import units
 from gapath.pictures.shown import Shown, axes_for
 from gapath.scenario.listed import Queries
+from gapath.scenario.nearest import nearest_free, other_reading
 
 if TYPE_CHECKING:
     from gapath.pictures.animation import Animation

@@ -95,6 +95,31 @@ def test_metres_point_up_by_hand():
     np.testing.assert_allclose(turned.to_metres(fields), [[9.75, 20.25], [9.25, 21.25]])
 
 
+def test_fields_of_metres_by_hand():
+    """A field holds its left and its lower border; what lies beyond the map has a field there."""
+    grid = GridMap("ros", np.zeros((2, 3)), resolution=0.5, origin=(10.0, 20.0, 0.0))
+    inside = [(10.0, 20.0), (10.49, 20.49), (11.0, 20.5)]
+    assert grid.to_fields(inside).tolist() == [[0, 1], [0, 1], [2, 0]]
+    beyond = [(9.9, 20.0), (11.5, 21.0), (1e300, -1e300)]
+    assert not any(grid.contains(tuple(place)) for place in grid.to_fields(beyond))
+
+
+@given(
+    st.tuples(st.integers(0, 99), st.integers(0, 49)),
+    st.sampled_from([0.05, 0.1, 0.5, 1.0]),
+    st.tuples(st.floats(-100, 100), st.floats(-100, 100), st.floats(-3.2, 3.2)),
+)
+def test_a_fields_centre_lies_in_it(place, resolution, origin):
+    grid = GridMap("ros", np.zeros((50, 100)), resolution=resolution, origin=origin)
+    assert grid.to_fields(grid.to_metres(np.array([place]))).tolist() == [[*place]]
+
+
+@pytest.mark.parametrize("metres", [(1.0, 2.0), [(1.0, 2.0, 3.0)], [(math.nan, 1.0)]])
+def test_what_are_no_points_is_refused(metres):
+    with pytest.raises(InputError, match="points"):
+        GridMap("ros", np.zeros((2, 3))).to_fields(metres)
+
+
 def test_the_digest_tells_maps_apart():
     maps = [
         GridMap("a", np.zeros((2, 3))),

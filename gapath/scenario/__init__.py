@@ -1,1 +1,1 @@
-"""Several pairs of start and target on one map: as a file lists them, or drawn."""
+"""Pairs of start and target on a map: as a file lists them, drawn, or nearest to what was asked."""

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import Checks, InputError, require, require_extra
-from gapath.grid import nearest_free, other_reading
 from gapath.kernels.units import OBSTACLE, SCALE
 from gapath.problem import Query
+from gapath.scenario.nearest import nearest_free, other_reading
 
 Picture = NDArray[np.bool_]
 """True where an obstacle is, (rows, cols)."""

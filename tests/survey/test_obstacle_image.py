@@ -10,7 +10,7 @@ from visibility_strategies import CLEARANCE, map_of, picture_of, pictures
 from gapath.errors import InputError
 from gapath.grid import GridMap
 from gapath.problem import Problem
-from gapath.survey.obstacle_image import MAX_RADIUS, Clearance, dilate, nearest_free
+from gapath.survey.obstacle_image import MAX_RADIUS, Clearance, dilate
 
 
 def clearance(**values):
@@ -175,23 +175,6 @@ def test_a_number_is_a_threshold():
     ]:
         (row,) = threshold_map(threshold, weights)
         assert [x for x, is_one in enumerate(row) if is_one] == blocked, threshold
-
-
-@given(pictures(most=12), st.integers(0, 2**32 - 1))
-def test_the_nearest_free_pixel_equals_the_twin(picture, seed):
-    place = np.random.default_rng(seed).integers(0, picture.shape[::-1]).tolist()
-    found = nearest_free(picture, tuple(place))
-    assert found == twin.nearest_free(picture, place)
-    if not picture[place[1], place[0]]:
-        assert found == tuple(place)
-
-
-def test_the_nearest_free_pixel_by_hand():
-    picture = np.ones((5, 5), dtype=np.bool_)
-    assert nearest_free(picture, (2, 2)) is None
-    picture[4, 2] = picture[2, 4] = picture[2, 0] = picture[0, 0] = False
-    assert nearest_free(picture, (2, 2)) == (0, 2)  # of three the first row, then column
-    assert nearest_free(picture, (2, 3)) == (2, 4)
 
 
 def test_start_and_target_must_have_room():

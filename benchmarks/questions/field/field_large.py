@@ -10,8 +10,9 @@ import gapath
 from benchmarks.field import compared, contenders, summary
 from benchmarks.measure import Row
 from benchmarks.posed import random_problems
-from gapath.grid import Field, GridMap, nearest_free
+from gapath.grid import Field, GridMap
 from gapath.problem import CornerCutting, Problem
+from gapath.scenario.nearest import nearest_free
 
 CLASSES = (
     "field_rooms", "field_map4", "field_clutter", "field_maze", "field_noise", "field_terrain",

@@ -9,10 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from gapath.errors import Checks
-from gapath.grid import Field, GridMap, nearest_free
+from gapath.grid import Field, GridMap
 from gapath.kernels.table import fill_parts
 from gapath.mapio._classes.drawing import Draw, as_table
 from gapath.mapio.generated.classes import CLASSES, Frame, Weights
+from gapath.scenario.nearest import nearest_free
 
 SUFFIXES: tuple[str, ...] = ()
 
