@@ -78,6 +78,11 @@ reliability: $(VENV)/ready ## try at length what docs/reliability.md promises; a
 mutants: $(VENV)/ready ## change kernels one place at a time; which changes does no test notice?
 	@nice -n 19 $(BIN)/python tests/kernels/mutants.py
 
+.PHONY: docs
+docs: $(VENV)/ready ## build the site of the pages into build/site; a warning is an error (half a minute)
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet -f docs/site/mkdocs.yml
+	@echo "read it: build/site/index.html"
+
 # Nothing sees into a compiled kernel, so the tests of kernels run once more without the compiler:
 # some two minutes. test_evaluation would take many more, as would planners and drives, whose kernels
 # a test of test_golden runs without it. Kernels on vectors, which only the compiler understands,

@@ -113,8 +113,8 @@ def test_a_notebook_that_fails_is_noticed(execute):
         execute(nbformat.v4.new_notebook(cells=cells))
 
 
-def test_the_library_examples_of_the_readme_run(tmp_path, capfd):
-    examples = blocks((ROOT / "README.md").read_text("utf-8"), "python")
+def test_the_library_examples_of_the_commands_run(tmp_path, capfd):
+    examples = blocks((ROOT / "docs" / "commands.md").read_text("utf-8"), "python")
     assert len(examples) == 2
     for example in examples:
         (tmp_path / "example.py").write_text(example)

@@ -1,6 +1,6 @@
 """A package of one's own, installed: each of its components is found, runs, is logged and reported.
 
-The package is ``tests/plugin``, whose files are the examples of CONTRIBUTING.md.
+The package is ``tests/plugin``, whose files are the examples of the pages.
 """
 
 import json
@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from pages import again
 from processes import forked
 
 TESTS = Path(__file__).parent
@@ -300,6 +301,14 @@ def test_a_component_that_lacks_something_is_one_clear_error(
     assert [path.name for path in tmp_path.iterdir()] == ["edited"]
 
 
+def test_the_page_of_its_planner_does_what_it_says(site, tmp_path):
+    text = (ROOT / "docs" / "how-to" / "my-planner.md").read_text("utf-8")
+    page = again.Again(text, tmp_path, {"PYTHONPATH": str(site)})
+    assert list(page.outputs()) == []
+    assert page.failed == {}
+    assert len(list(tmp_path.glob("outputs/*/*/manifest.json"))) == 1 + 4
+
+
 def test_its_components_keep_the_contracts(site):
     """The tests that find every component find an installed package's, too."""
     tests = ["tests/test_contract.py", "tests/metrics", "tests/driving/test_driving.py",
@@ -318,8 +327,9 @@ def test_its_components_keep_the_contracts(site):
 
 
 def blocks():
-    """The files that CONTRIBUTING.md shows: name -> content."""
-    text = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
+    """The files that the pages show: name -> content."""
+    pages = ("CONTRIBUTING.md", "docs/how-to/my-planner.md")
+    text = "\n".join((ROOT / page).read_text("utf-8") for page in pages)
     return dict(re.findall(r"`([\w/.]+)`:\n\n```\w+\n(.*?)```", text, re.DOTALL))
 
 
