@@ -99,6 +99,17 @@ def _parser() -> argparse.ArgumentParser:
     rerun.add_argument(
         "-o", dest="folder", type=Path, metavar="DIR", help="where to (default: beside FILE)"
     )
+    bag = command("bag", _bag, "make a bag of ROS 2 from a log in which epochs and the robot move")
+    bag.add_argument("folder", type=Path, metavar="DIR", help="the bag, a new folder")
+    bag.add_argument(
+        "--trials", type=_trials, default=[0], metavar="N,N", help="which trials (default: 0)"
+    )
+    about = "seconds that a step or an epoch takes (default: 0.1)"
+    bag.add_argument("--step-s", type=float, default=0.1, metavar="S", help=about)
+    text = "write gapath_msgs, the definitions of a log's messages, as a package of ROS 2"
+    messages = commands.add_parser("messages", help=text, description=f"{text.capitalize()}.")
+    messages.add_argument("folder", type=Path, metavar="DIR", help="the package, a new folder")
+    messages.set_defaults(run=_messages)
     crate.add(commands)
     command("view", _view, "open a log's first trial, or a recording (.rrd), in the Rerun viewer")
     return parser
@@ -266,6 +277,27 @@ def _record(path: Path, trials: list[int], folder: Path, limits: mcap.Limits) ->
         len(names) == len(set(trials)), path, f"{len(names)} of the trials", "a log of all of them"
     )
     return names
+
+
+def _bag(arguments: argparse.Namespace) -> int:
+    from gapath.recorders.mcap.ros.animation import animate
+
+    log, folder, limits = _log_of(arguments.file), arguments.folder, _limits(arguments)
+    for path in animate(log, folder, arguments.trials, arguments.step_s, limits):
+        print(printable(path))
+    return 0
+
+
+def _messages(arguments: argparse.Namespace) -> int:
+    from gapath.recorders.mcap.ros.package import package_files
+
+    folder = arguments.folder
+    require(not os.path.lexists(folder), folder, "something that is there", "a new folder")
+    for name, text in package_files().items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+    print(printable(folder))
+    return 0
 
 
 def _view(arguments: argparse.Namespace) -> int:

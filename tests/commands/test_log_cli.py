@@ -160,7 +160,7 @@ def test_verify_of_drives_does_not_compare_wall_time(drive_log, replay, capsys):
     replay.events = elsewhere
     code, out, _ = call(capsys, "verify", drive_log)
     assert code == 1
-    assert "message 19, step 3, /pose.pose.position.y: 3.5 in the log, 2.5 now" in out
+    assert "message 20, step 3, /pose.pose.position.y: 3.5 in the log, 2.5 now" in out
 
 
 def test_rerun_of_drives(drive_log, capsys):
@@ -177,7 +177,7 @@ def test_info_of_a_log_that_was_cut_off(cut, capsys):
 def test_salvage_then_info(cut, capsys):
     code, out, _ = call(capsys, "salvage", cut)
     whole = cut.with_suffix("")
-    assert (code, out) == (0, f"{whole}: 105 messages saved and read back\n")
+    assert (code, out) == (0, f"{whole}: 126 messages saved and read back\n")
     _, out, _ = call(capsys, "info", whole)
     assert "whole, but the run was interrupted" in out
 
@@ -193,7 +193,7 @@ def test_salvage_names_its_output(cut, capsys):
 
 def test_verify_of_what_is_reproduced(log, replay, capsys):
     code, out, _ = call(capsys, "verify", log)
-    assert (code, out) == (0, f"{log}: reproduced, byte for byte, 127 messages; {VERSIONS}\n")
+    assert (code, out) == (0, f"{log}: reproduced, byte for byte, 128 messages; {VERSIONS}\n")
 
 
 def test_verify_of_an_interrupted_run_compares_what_is_there(cut, replay, capsys):
@@ -201,7 +201,7 @@ def test_verify_of_an_interrupted_run_compares_what_is_there(cut, replay, capsys
     code, out, _ = call(capsys, "verify", cut.with_suffix(""))
     assert code == 3
     assert (
-        ": interrupted after trial 24, equal so far, byte for byte, 105 messages; made with" in out
+        ": interrupted after trial 29, equal so far, byte for byte, 126 messages; made with" in out
     )
 
 
@@ -209,7 +209,7 @@ def test_verify_of_several_logs_says_a_line_of_each(log, replay, capsys, tmp_pat
     replay.events = changed(3, weights=2.5)
     code, out, err = call(capsys, "verify", log, log)
     assert (code, err) == (1, "")
-    begins = f"{log}: differs after 8 messages that are equal"
+    begins = f"{log}: differs after 9 messages that are equal"
     assert [line.partition(":")[0] for line in out.splitlines()] == [str(log)] * 2
     assert out.count(begins) == 2
     bad = tmp_path / "bad.mcap"
@@ -253,21 +253,21 @@ def other_gene():
 DIFFERENCES = {
     "cost": (
         changed(3, weights=2.5),
-        "message 8, step 2, /result.weights: 1.5 in the log, 2.5 now",
+        "message 9, step 2, /result.weights: 1.5 in the log, 2.5 now",
     ),
-    "gene": (other_gene, "message 22, step 8, /ga_run.chromosomes[6]: 0 in the log, 9 now"),
+    "gene": (other_gene, "message 23, step 8, /ga_run.chromosomes[6]: 0 in the log, 9 now"),
     "path": (
         changed(3, path=np.zeros((1, 2), dtype=np.int32)),
-        "message 7, step 2, /path.poses[1]",
+        "message 8, step 2, /path.poses[1]",
     ),
     "status": (
         changed(3, status=PlanStatus.INFEASIBLE),
-        "schema gapath_msgs/msg/Result in the log, message 8, step 2, /log now",
+        "schema gapath_msgs/msg/Result in the log, message 9, step 2, /log now",
     ),
     "shorter": (lambda: list(run_events())[:-1], ", step 60, /log in the log, nothing now"),
     "kind": (
         lambda: [next(run_events()), RunFinished(0, 0, 0)],
-        "schema gapath_msgs/msg/TrialStart in the log, message 5, step 0, /log now",
+        "schema gapath_msgs/msg/TrialStart in the log, message 6, step 0, /log now",
     ),
 }
 

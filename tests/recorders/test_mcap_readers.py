@@ -168,7 +168,7 @@ def test_a_foreign_reader_understands_drives(tmp_path):
 
 def test_outcomes_are_named_as_they_are_defined():
     for name, kind in (("DriveEnd", Outcome), ("DriveStep", Mode), ("PlannerCall", PlanStatus)):
-        text = log_format.schema({v: k for k, v in log_format.TOPICS.items()}[OWN + name])
+        text = log_format.schema(OWN + name)
         for member in kind:
             assert f"uint8 {member.name}={member.value}\n" in text.decode()
 

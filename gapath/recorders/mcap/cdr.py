@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from gapath.grid import Field, GridMap, Table
 from gapath.kernels.units import OBSTACLE, SCALE
 from gapath.problem import Answer, PlanStatus
-from gapath.recorders.mcap.format import FRAME, TOPICS, TYPES, WORLD
+from gapath.recorders.mcap.format import ALL_TOPICS, FRAME, ROBOT, TYPES, WORLD
 
 ENCAPSULATION = b"\0\1\0\0"
 """Before every message: little-endian CDR."""
@@ -38,7 +38,7 @@ class Record(NamedTuple):
 
 def record(topic: str, time: int, *values: Any) -> Record:
     """Make a message of its fields in order, by `rosbags`."""
-    name = TOPICS[topic]
+    name = ALL_TOPICS[topic]
     message = TYPES.types[name](*values)
     return Record(topic, time, bytes(TYPES.serialize_cdr(message, name, little_endian=True)))
 
@@ -143,13 +143,28 @@ def _stamp(time: int) -> Any:
 
 def frames_record() -> Record:
     """Give the tree of frames: the map's in the world's, both at one place."""
+    return _frame_record("/tf_static", 0, (WORLD, FRAME), (0.0, 0.0), (0.0, 1.0))
+
+
+def robot_frame(time: int, metres: tuple[float, float], turn: tuple[float, float]) -> Record:
+    """Give the robot's frame in the map's; its pose as of `pose_record`."""
+    return _frame_record("/tf", time, (FRAME, ROBOT), metres, turn)
+
+
+def _frame_record(
+    topic: str,
+    time: int,
+    frames: tuple[str, str],
+    metres: tuple[float, float],
+    turn: tuple[float, float],
+) -> Record:
     transform = TYPES.types["geometry_msgs/msg/Transform"](
-        TYPES.types["geometry_msgs/msg/Vector3"](0.0, 0.0, 0.0),
-        TYPES.types["geometry_msgs/msg/Quaternion"](0.0, 0.0, 0.0, 1.0),
+        TYPES.types["geometry_msgs/msg/Vector3"](*metres, 0.0),
+        TYPES.types["geometry_msgs/msg/Quaternion"](0.0, 0.0, *turn),
     )
-    header = TYPES.types["std_msgs/msg/Header"](_stamp(0), WORLD)
-    stamped = TYPES.types["geometry_msgs/msg/TransformStamped"](header, FRAME, transform)
-    return record("/tf_static", 0, [stamped])
+    header = TYPES.types["std_msgs/msg/Header"](_stamp(time), frames[0])
+    stamped = TYPES.types["geometry_msgs/msg/TransformStamped"](header, frames[1], transform)
+    return record(topic, time, [stamped])
 
 
 def per_cent(entries: Table) -> NDArray[np.int8]:

@@ -26,10 +26,7 @@ from gapath.recorders.mcap.format import EARLIER, LOG_VERSION, LONGEST_STEP, For
 from gapath.scenario.listed import Queries
 from gapath.store.settings import of_text, text_of
 
-_READ = (*EARLIER, LOG_VERSION)
-
 _OF_RECORDERS = ("recorder.", "recorder[")
-_OF_RECORDERS_TOLD = ("4", "5")  # versions that have settings of recorders
 
 LOST = "gapath_lost"
 """Name of the metadata record of a log that was saved and lacks something."""
@@ -193,7 +190,7 @@ def run_started(text: Mapping[str, str], files: Sequence[Stored]) -> RunStarted:
     require(_digest(written, files) == digest, "sha256", digest, "the digest of what is there")
     arrays, settings = _Arrays(files), told("settings", of_text)
     of_recorders = [name for name in settings if f"{name}.".startswith(_OF_RECORDERS)]
-    good = version in _OF_RECORDERS_TOLD or not of_recorders
+    good = version in ("4", "5") or not of_recorders
     require(good, "settings", of_recorders[:1], f"none of recorders in version {version}")
     return RunStarted(
         experiment=told("experiment"),
@@ -219,7 +216,8 @@ def run_started(text: Mapping[str, str], files: Sequence[Stored]) -> RunStarted:
 def form_of(text: Mapping[str, str]) -> Form:
     """Read from the metadata what form a log has; raises InputError where it is none."""
     version = text.get("gapath_log_version")
-    require(version in _READ, "gapath_log_version", version, f"one of {', '.join(_READ)}")
+    known = (*EARLIER, LOG_VERSION)
+    require(version in known, "gapath_log_version", version, f"one of {', '.join(known)}")
     if version != LOG_VERSION:
         return earlier(str(version))
     step_ns = _told(text, "step_ns", int)

@@ -67,6 +67,9 @@ WORLD = "world"
 """The frame above it in the tree of frames, at the same place: without a tree viewers of ROS know
 no frame at all."""
 
+ROBOT = "base_link"
+"""The robot's frame (REP 105)."""
+
 _OWN = {
     "gapath_msgs/msg/TrialStart": """\
 # A trial begins. Its random streams are keyed by (seed, trial, call).
@@ -204,6 +207,14 @@ uint64 steps
 uint64 stands             # in how many of them it stood
 uint8 outcome
 """,
+    "gapath_msgs/msg/Epoch": """\
+# An epoch of a genetic algorithm; only in bags that gapath-log bag makes.
+uint64 trial
+uint64 call               # number of this run within its trial
+uint32 epoch              # from 1
+float64 best              # fitness of the best individual
+float64 mean              # mean fitness of the population
+""",
     "gapath_msgs/msg/RunEnd": """\
 # The run was not interrupted.
 uint64 trials
@@ -238,6 +249,13 @@ TOPICS = {
 }
 """Message type of every topic; a log has a channel for those that its run wrote to."""
 
+ALL_TOPICS = TOPICS | {
+    "/best": "nav_msgs/msg/Path",
+    "/epoch": "gapath_msgs/msg/Epoch",
+    "/tf": "tf2_msgs/msg/TFMessage",
+}
+"""The same with those of bags that are made of a log to see it move."""
+
 LATCHED = frozenset(
     ("/map", "/start", "/target", "/optimal_path", "/tf_static", "/path", "/known_map")
 ) | {"/current_path", "/past_path"}
@@ -267,9 +285,13 @@ for _name, _text in _OWN.items():
     TYPES.register(get_types_from_msg(_text, _name))
 
 
-def schema(topic: str) -> bytes:
-    """Give the definition of a topic's messages, schema encoding ``ros2msg``."""
-    name = TOPICS[topic]
+def definitions() -> dict[str, str]:
+    """Give the texts of gapath's own definitions by name, in the order in which they are here."""
+    return {name.rpartition("/")[2]: text for name, text in _OWN.items()}
+
+
+def schema(name: str) -> bytes:
+    """Give a type's definition, schema encoding ``ros2msg``."""
     text = _OWN.get(name) or TYPES.generate_msgdef(name, ros_version=2)[0]
     return text.encode()
 

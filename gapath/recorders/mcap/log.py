@@ -138,7 +138,7 @@ class LogWriter:
             name = TOPICS[topic]
             if name not in self._schemas:
                 self._schemas[name] = len(self._schemas) + 1
-                described = Schema(self._schemas[name], schema(topic), "ros2msg", name)
+                described = Schema(self._schemas[name], schema(name), "ros2msg", name)
                 self._writer.schema(described)
                 yield described
             self._channels[topic] = len(self._channels) + 1
@@ -174,6 +174,12 @@ class LogWriter:
         return described(name, self._writer.statistics, self._channels)
 
 
+def check_step(step_s: float) -> None:
+    """Refuse a step of no sensible time: raises InputError."""
+    good = 1 <= step_s * 1e9 <= LONGEST_STEP
+    require(good, "step_s", step_s, f"from 1e-9 to {LONGEST_STEP / 1e9:g}")
+
+
 @dataclass
 class Recorder:
     """Writes ``run.mcap``, and ``metadata.yaml``, with which the folder is a bag of ROS 2.
@@ -194,8 +200,7 @@ class Recorder:
     _writer: LogWriter = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        good = 1 <= self.step_s * 1e9 <= LONGEST_STEP
-        require(good, "step_s", self.step_s, f"from 1e-9 to {LONGEST_STEP / 1e9:g}")
+        check_step(self.step_s)
 
     def check(self, trials: int) -> None:
         """Accept every run; its size is bounded while it is written."""

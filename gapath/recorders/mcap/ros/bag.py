@@ -6,7 +6,7 @@ from functools import lru_cache
 import yaml
 from mcap.records import Statistics
 
-from gapath.recorders.mcap.format import TOPICS, TYPES, offered_qos_profiles
+from gapath.recorders.mcap.format import ALL_TOPICS, TYPES, offered_qos_profiles
 
 METADATA = "metadata.yaml"
 """Name of the file that makes a folder a bag."""
@@ -14,9 +14,7 @@ METADATA = "metadata.yaml"
 _VERSION = 9  # of rosbag2's description of a bag, since ROS 2 Jazzy
 
 
-def described(
-    log: str, statistics: Statistics, channels: Mapping[str, int], types: Mapping[str, str] = TOPICS
-) -> bytes:
+def described(log: str, statistics: Statistics, channels: Mapping[str, int]) -> bytes:
     """Describe a bag.
 
     Parameters
@@ -27,8 +25,6 @@ def described(
         What this holds.
     channels : mapping of str to int
         Topic -> channel.
-    types : mapping of str to str
-        Topic -> type of its messages.
 
     Returns
     -------
@@ -45,10 +41,10 @@ def described(
         {
             "topic_metadata": {
                 "name": topic,
-                "type": types[topic],
+                "type": ALL_TOPICS[topic],
                 "serialization_format": "cdr",
                 "offered_qos_profiles": offered_qos_profiles(topic),
-                "type_description_hash": _hash(types[topic]),
+                "type_description_hash": _hash(ALL_TOPICS[topic]),
             },
             "message_count": counts[channel],
         }
