@@ -293,7 +293,7 @@ def _messages(arguments: argparse.Namespace) -> int:
 
     folder = arguments.folder
     require(not os.path.lexists(folder), folder, "something that is there", "a new folder")
-    for name, text in package_files().items():
+    for name, text in package_files(gapath.__version__).items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text)
     print(printable(folder))

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import gapath
 from gapath.recorders.mcap.format import definitions
 
 PACKAGE = "gapath_msgs"
@@ -38,8 +37,13 @@ ament_package()
 """
 
 
-def package_files() -> dict[Path, str]:
+def package_files(version: str) -> dict[Path, str]:
     """Make the package's files, of the very texts that logs hold as schemas.
+
+    Parameters
+    ----------
+    version : str
+        The package's: gapath's, of which it takes three numbers.
 
     Returns
     -------
@@ -48,9 +52,9 @@ def package_files() -> dict[Path, str]:
     """
     texts = {Path("msg") / f"{name}.msg": text for name, text in definitions().items()}
     listed = "".join(f'  "{path.as_posix()}"\n' for path in texts)
-    version = ".".join(gapath.__version__.split(".")[:3])
+    numbers = ".".join(version.split(".")[:3])
     return {
-        Path("package.xml"): _XML.format(package=PACKAGE, version=version),
+        Path("package.xml"): _XML.format(package=PACKAGE, version=numbers),
         Path("CMakeLists.txt"): _CMAKE.format(package=PACKAGE, files=listed),
         **texts,
     }
