@@ -9,7 +9,7 @@ from rosbags.rosbag2 import Reader
 from gapath.commands import log as log_cli
 from gapath.recorders.mcap.format import TYPES
 
-LAYOUT = json.loads((Path(__file__).parents[2] / "examples" / "foxglove.json").read_text())
+LAYOUT = json.loads((Path(__file__).parents[3] / "examples" / "foxglove.json").read_text())
 PANELS = LAYOUT["configById"]
 
 
