@@ -12,6 +12,7 @@ from matplotlib.path import Path as Polygon
 from recordings import centres, read, record, rerun_command
 
 from gapath.driving.followed import followed
+from gapath.driving.sensed import sensed
 from gapath.events import (
     NEVER_LEFT,
     Called,
@@ -98,7 +99,7 @@ def test_the_outline_holds_what_the_sensor_sees(heading, layers):
     table, seen = np.zeros((15, 15), dtype=np.int32), np.zeros((15, 15), dtype=np.bool_)
     news, least = np.empty((2, (layers + 1) ** 2), dtype=np.int64), np.zeros(1, dtype=np.int64)
     count = sense(table, table.copy(), seen, 7, 7, heading, layers, False, news, 0, least)
-    outline = drive_scene._outline(layers, HEADING_X[heading], HEADING_Y[heading]) + 7.5
+    outline = sensed(layers, heading) + 7.5
     y, x = np.mgrid[0:15, 0:15]
     inside = Polygon(outline).contains_points(np.stack([x.ravel(), y.ravel()], axis=1) + 0.5)
     assert np.flatnonzero(inside).tolist() == sorted(news[0, :count].tolist())

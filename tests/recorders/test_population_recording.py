@@ -105,7 +105,7 @@ def test_no_curve_is_laid_out_that_would_be_empty():
         (alone._replace(population=None), []),
         (evolution._replace(population=None), ["fitness", "obstacles"]),
     ):
-        views = views_of(scene._blueprint(run, [replace(evolved, evolution=told)]).root_container)
+        views = views_of(scene.layout(run, [replace(evolved, evolution=told)]).root_container)
         curves = [view.origin for view in views if isinstance(view, rrb.TimeSeriesView)]
         assert curves == expected
         assert type(views[0]) is rrb.Spatial2DView

@@ -62,7 +62,7 @@ def text(
     return document(run, sentence, rows, legend)
 
 
-def layout(grid: GridMap, timeline: str, timed: bool) -> rrb.Blueprint:
+def arranged(grid: GridMap, timeline: str, timed: bool) -> rrb.Blueprint:
     """Lay the views out: a large map above the modes and curves; calls and text beside them."""
     so_far = rrb.VisibleTimeRanges(
         timeline=timeline,

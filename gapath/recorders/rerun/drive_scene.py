@@ -4,9 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 import rerun as rr
+import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
 from gapath.driving.followed import Followed, followed
+from gapath.driving.sensed import sensed
 from gapath.events import (
     Called,
     DriveFinished,
@@ -37,7 +39,7 @@ from gapath.recorders.rerun.drawing import (
     new_stream,
     send_curve,
 )
-from gapath.recorders.rerun.drive_panels import layout, text
+from gapath.recorders.rerun.drive_panels import arranged, text
 
 NEEDS: frozenset[type[Event]] = frozenset({DriveStarted, Stepped, DriveFinished})
 """Kinds of events that a trial has whose scene this is."""
@@ -90,10 +92,9 @@ def recording(run: RunStarted, events: list[Event]) -> bytes:
     calls = [event for event in events if isinstance(event, Called)]
     changes = [event for event in events if isinstance(event, PathsChanged)]
     drive = _Drive(run, trial, able, steps, calls, changes, finished)
-    timed = not all(np.isnan(step.seconds) for step in steps)
     stream = new_stream(run, trial)
     memory = stream.memory_recording()
-    stream.send_blueprint(layout(run.problem.map, TIMELINE, timed))
+    stream.send_blueprint(layout(run, events))
     stream.send_recording_name(f"{run.problem.map.name} {run.method} trial {trial.trial}")
     _log_true_map(stream, run.problem.map)
     log_problem(stream, posed_in(run, events), 2)
@@ -106,13 +107,23 @@ def recording(run: RunStarted, events: list[Event]) -> bytes:
     time = [rr.TimeColumn(TIMELINE, sequence=drive.time(steps))]
     left = np.array([each.left for each in kept])
     send_curve(stream, "cost/left", time, left, "cost left", ORANGE)
-    if timed:
+    if _timed(events):
         seconds = np.array([step.seconds for step in steps])
         send_curve(stream, "time/step", time, 1000 * seconds, "milliseconds", GREY)
     stream.log("text", text(run, trial, able, calls, finished), static=True)
     content: bytes = memory.drain_as_bytes()
     stream.disconnect()
     return content
+
+
+def layout(run: RunStarted, events: list[Event]) -> rrb.Blueprint:
+    """Lay the views out: a large map above the modes and curves; calls and text beside them."""
+    return arranged(run.problem.map, TIMELINE, _timed(events))
+
+
+def _timed(events: list[Event]) -> bool:
+    """Tell whether there is wall time: a log has none."""
+    return not all(np.isnan(event.seconds) for event in events if isinstance(event, Stepped))
 
 
 def _log_true_map(stream: rr.RecordingStream, grid: GridMap) -> None:
@@ -179,19 +190,9 @@ def _send_robot(stream: rr.RecordingStream, drive: _Drive, layers: int) -> None:
     stream.send_columns("map/trail", time, rr.LineStrips2D.columns(strips=list(pieces)))
     # It looks before it moves.
     stream.log("map/field_of_view", line(YELLOW, 1, draw_order=23), static=True)
-    views = [_outline(layers, *ahead) + place for ahead, place in zip(forward, before, strict=True)]
+    looks = zip(headings.tolist(), before, strict=True)
+    views = [sensed(layers, heading) + place for heading, place in looks]
     stream.send_columns("map/field_of_view", time, rr.LineStrips2D.columns(strips=views))
-
-
-def _outline(layers: int, x: float, y: float) -> NDArray[np.float32]:
-    """Give the border of what is seen in a direction, around the robot's field's centre."""
-    far = layers + 0.5
-    if x and y:  # a square, which the robot's field is the corner of
-        corners = [(-0.5, -0.5), (far, -0.5), (far, far), (-0.5, far), (-0.5, -0.5)]
-        return np.array([(x * u, y * v) for u, v in corners], dtype=np.float32)
-    sides = [(u, v + 0.5) for v in range(layers + 1) for u in (v - 0.5, v + 0.5)]
-    corners = [*sides, *((u, -v) for u, v in reversed(sides)), sides[0]]
-    return np.array([(x * u - y * v, y * u + x * v) for u, v in corners], dtype=np.float32)
 
 
 def _send_paths(stream: rr.RecordingStream, drive: _Drive, kept: list[Followed]) -> None:

@@ -46,9 +46,7 @@ def recording(run: RunStarted, events: list[Event]) -> bytes:
     assert isinstance(trial, TrialStarted) and isinstance(finished, Finished)
     stream = new_stream(run, trial)
     memory = stream.memory_recording()
-    text = rrb.TextDocumentView(origin="text", name="Settings and result")
-    layout = blueprint(map_view(run.problem.map), [text], TIMELINE)
-    stream.send_blueprint(layout)
+    stream.send_blueprint(layout(run, events))
     stream.send_recording_name(f"{run.problem.map.name} {run.method} trial {trial.trial}")
     posed = posed_in(run, events)
     log_problem(stream, posed, 6)
@@ -80,3 +78,9 @@ def recording(run: RunStarted, events: list[Event]) -> bytes:
     content: bytes = memory.drain_as_bytes()
     stream.disconnect()
     return content
+
+
+def layout(run: RunStarted, events: list[Event]) -> rrb.Blueprint:
+    """Lay the views out: a large map, text on the right."""
+    text = rrb.TextDocumentView(origin="text", name="Settings and result")
+    return blueprint(map_view(run.problem.map), [text], TIMELINE)

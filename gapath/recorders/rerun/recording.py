@@ -93,12 +93,10 @@ class Recorder:
                 self._events.append(event)
 
     def _write(self, trial: int, events: list[Event]) -> None:
-        from gapath.recorders.rerun import drive_scene, plain_scene, scene
+        from gapath.recorders.rerun.scenes import scene_of
 
-        told = {type(event) for event in events}
-        kind = next(each for each in (drive_scene, scene, plain_scene) if told >= each.NEEDS)
         name = f"trial-{trial}.rrd"
-        write_part(self._folder / name, kind.recording(self._run, events))
+        write_part(self._folder / name, scene_of(events).recording(self._run, events))
         self._names.append(name)
 
     def close(self) -> list[str]:

@@ -75,7 +75,7 @@ def recording(run: RunStarted, events: list[Event]) -> bytes:
     stream = new_stream(run, trial)
     memory = stream.memory_recording()
     surveys = [event for event in events if isinstance(event, Surveyed)]
-    stream.send_blueprint(_blueprint(run, evolutions))
+    stream.send_blueprint(layout(run, events))
     stream.send_recording_name(f"{run.problem.map.name} {run.method} trial {trial.trial}")
     posed = posed_in(run, events)
     log_problem(stream, posed, 6)
@@ -241,8 +241,9 @@ def _number(value: float) -> str:
     return f"{value:.10g}" if np.isfinite(value) else "none"
 
 
-def _blueprint(run: RunStarted, evolutions: list[Evolved]) -> rrb.Blueprint:
+def layout(run: RunStarted, events: list[Event]) -> rrb.Blueprint:
     """Lay the views out: a large map, above curves if there are any, text on the right."""
+    evolutions = [event for event in events if isinstance(event, Evolved)]
     view: rrb.View | rrb.Container = map_view(run.problem.map)
     panels: list[rrb.View] = [rrb.TextDocumentView(origin="text", name="Settings and result")]
     if evolutions:
