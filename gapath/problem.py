@@ -15,7 +15,7 @@ from gapath.grid import Field, GridMap, PlanningMap
 from gapath.history.evolution import Evolution
 from gapath.history.graph import Graph
 from gapath.kernels import units
-from gapath.pictures.shown import Shown, axes_for
+from gapath.pictures.shown import FRAMES, Shown, axes_for
 from gapath.scenario.listed import Queries
 from gapath.scenario.nearest import nearest_free, other_reading
 
@@ -277,15 +277,18 @@ class Plan(Answer, Shown):
         draw_convergence(ax, history.best, history.mean)
         return ax
 
-    def animate(self) -> "Animation":
+    def animate(self, most: int = FRAMES) -> "Animation":
         """Show the best path of each epoch in which it became another one.
 
-        Of a planner that tells of its population all polygons are shown, whenever one changed.
+        Parameters
+        ----------
+        most : int
+            Pictures at most, spread evenly.
 
         Returns
         -------
         Animation
-            A notebook plays it; its `save` writes a file.
+            A notebook plays it, `save` writes it; with a population all polygons are shown.
 
         Raises
         ------
@@ -295,10 +298,9 @@ class Plan(Answer, Shown):
         from gapath.pictures.animation import growing_path
 
         problem, history = self._asked(), self._history()
-        shape = problem.map.weights.shape
-        ways, best, population = history.way_points, history.best, history.population
-        crowds = population.crowds(len(best)) if population else ()
-        return growing_path(problem.plot, shape, ways, best, crowds)
+        shape, ways, best = problem.map.weights.shape, history.way_points, history.best
+        crowds = history.population.crowds(len(best)) if history.population else ()
+        return growing_path(problem.plot, shape, ways, best, crowds, most)
 
     def shares(self) -> dict[str, float]:
         """Tell by how much each way of making and changing a path lowered the cost: name -> cost.
@@ -324,9 +326,9 @@ class Plan(Answer, Shown):
         return self.evolution
 
     def _told(self) -> dict[str, object]:
-        told: dict[str, object] = {"status": f"{self.status.name.lower()}: {self.status.sentence}"}
-        told |= {"cost": f"{self.cost:g}", "fields": len(self.path)}
-        return told | {n: getattr(self, n) for n in ("epochs", "evaluations", "expansions")}
+        status = f"{self.status.name.lower()}: {self.status.sentence}"
+        effort = {n: getattr(self, n) for n in ("epochs", "evaluations", "expansions")}
+        return {"status": status, "cost": f"{self.cost:g}", "fields": len(self.path), **effort}
 
 
 class Query(Protocol):

@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.driving.followed import followed
+from gapath.driving.sensed import sensed
 from gapath.errors import require
-from gapath.events import Called, DriveFinished, Event, Outcome, Stepped
+from gapath.events import Called, DriveFinished, DriveStarted, Event, Outcome, Stepped
 from gapath.kernels.units import OBSTACLE, SCALE
-from gapath.pictures.shown import Shown
+from gapath.pictures.shown import FRAMES, Shown
 from gapath.planning.path import without_stands
 from gapath.problem import Problem, no_path
 
@@ -105,8 +106,15 @@ class Drive(Shown):
         ax.set_title(told, parse_math=False)
         return ax
 
-    def animate(self) -> "Animation":
+    def animate(self, most: int = FRAMES) -> "Animation":
         """Show the drive step by step: the robot, its way, the path that it follows, what it knows.
+
+        Also the border of what its sensor covers, from where it looked before it moved.
+
+        Parameters
+        ----------
+        most : int
+            Pictures at most, spread evenly.
 
         Returns
         -------
@@ -122,13 +130,14 @@ class Drive(Shown):
             robot = Robot(self.problem.plot(ax), weights.shape)
 
             def show(step: int) -> None:
-                robot.show(weights, self.known(step), self.places[: step + 1], self._paths[step])
+                ways = self.places[: step + 1], self._paths[step]
+                robot.show(weights, self.known(step), *ways, self._seen_from(step))
                 mode = self._steps[step].mode.name.lower()
                 ax.set_title(f"step {step} of {self.steps}: {mode}")
 
             return show
 
-        return Animation(weights.shape, chosen(range(self.steps + 1)), scene)
+        return Animation(weights.shape, chosen(range(self.steps + 1), most), scene)
 
     @cached_property
     def _end(self) -> DriveFinished:
@@ -147,6 +156,12 @@ class Drive(Shown):
         entries = np.concatenate([step.entries for step in self._steps])
         weights = np.where(entries >= OBSTACLE, 1.0, entries / SCALE)
         return fields, weights, np.cumsum([len(step.fields) for step in self._steps])
+
+    def _seen_from(self, step: int) -> NDArray[np.float32]:
+        """Give the border (n, 2) of what the sensor covers in a step, as (x, y)."""
+        (able,) = (event for event in self.events if isinstance(event, DriveStarted))
+        border = sensed(able.sensor_range, self._steps[step].heading)
+        return np.asarray(border + self.places[max(step - 1, 0)], dtype=np.float32)
 
     @cached_property
     def _paths(self) -> list[NDArray[np.int32]]:

@@ -16,21 +16,22 @@ from PIL import Image
 from gapath.errors import require
 from gapath.pictures.board import POINT, draw_path
 from gapath.pictures.canvas import Axes, Figure, FigureCanvasAgg, LineCollection
-from gapath.pictures.shown import text_of
+from gapath.pictures.film import ffmpeg, mp4_of
+from gapath.pictures.shown import FRAMES, text_of
 
-FRAMES = 60
-"""Pictures that an animation has at most."""
+KINDS = (".webp", ".gif", ".mp4", ".html")
+"""Files that an animation can be saved as."""
 
 _WIDTH, _HEIGHT, _DPI = 6.0, 7.0, 90
 _ROOM = 0.75
 """Inches of a picture beside and above the map."""
 
 
-def chosen(moments: Sequence[int]) -> list[int]:
-    """Choose `FRAMES` moments at most, evenly, the first and the last among them."""
-    if len(moments) <= FRAMES:
+def chosen(moments: Sequence[int], most: int = FRAMES) -> list[int]:
+    """Choose `most` moments at most, evenly, the first and the last among them."""
+    if len(moments) <= most:
         return list(moments)
-    return [moments[i] for i in np.linspace(0, len(moments) - 1, FRAMES).round().astype(int)]
+    return [moments[i] for i in np.linspace(0, len(moments) - 1, most).round().astype(int)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,31 +75,35 @@ class Animation:
         return frames
 
     def save(self, path: str | Path) -> None:
-        """Write it as an animated GIF, or as a page that needs no other file.
+        """Write it as a moving picture, or as a page that needs no other file.
 
         Parameters
         ----------
         path : str or Path
-            A file ``.gif`` or ``.html`` in an existing folder.
+            A file ``.webp``, ``.gif``, ``.mp4`` (by the program ffmpeg) or ``.html`` in an
+            existing folder.
 
         Raises
         ------
         InputError
-            If it is another kind of file, or there is no such folder.
+            If it is another kind of file, there is no such folder, or no ffmpeg for an ``.mp4``.
         """
         path = Path(path)
         kind = path.suffix.lower()
-        require(kind in (".gif", ".html"), "animation", path.name, "a file name .gif or .html")
+        require(kind in KINDS, "animation", path.name, f"a file name {', '.join(KINDS)}")
         require(path.parent.is_dir(), "animation", path, "a file in an existing folder")
-        if kind == ".html":
+        if kind == ".mp4":
+            path.write_bytes(mp4_of(ffmpeg(), self.frames, self.rate))
+        elif kind == ".html":
             path.write_text(f"<!doctype html><meta charset=utf-8>{self._repr_html_()}", "utf-8")
-            return
-        first, *others = self.frames
-        stream = io.BytesIO()
-        first.save(
-            stream, "GIF", save_all=True, append_images=others, duration=1000 / self.rate, loop=0
-        )
-        path.write_bytes(stream.getvalue())
+        else:
+            first, *others = self.frames
+            stream, pause = io.BytesIO(), round(1000 / self.rate)
+            how: dict[str, Any] = {"lossless": True} if kind == ".webp" else {}
+            first.save(
+                stream, kind[1:], save_all=True, append_images=others, duration=pause, loop=0, **how
+            )
+            path.write_bytes(stream.getvalue())
 
     def _repr_html_(self) -> str:
         pictures = []
@@ -119,6 +124,7 @@ def growing_path(
     ways: NDArray[np.int32],
     fitness: NDArray[np.float64],
     crowds: Sequence[Sequence[NDArray[np.int32]]] = (),
+    most: int = FRAMES,
 ) -> Animation:
     """Show how a path grows better: each epoch in which it became another one, and the last.
 
@@ -136,6 +142,8 @@ def growing_path(
         Its fitness.
     crowds : sequence of sequence of (n, 2) int32
         The lines of all individuals epoch by epoch; none if they are not shown.
+    most : int
+        Pictures at most.
 
     Returns
     -------
@@ -161,7 +169,7 @@ def growing_path(
 
         return show
 
-    return Animation(shape, chosen(sorted({0, *changed, last})), scene)
+    return Animation(shape, chosen(sorted({0, *changed, last}), most), scene)
 
 
 _PLAYER = Template(

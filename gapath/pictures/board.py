@@ -166,6 +166,7 @@ class Robot:
         (self._path,) = axes.plot([], [], color=POINT, linestyle=":", linewidth=1.5)
         (self._way,) = axes.plot([], [], color=PATH, linewidth=1.8)
         (self._place,) = axes.plot([], [], "o", color=PATH, markersize=7)
+        (self._sensor,) = axes.plot([], [], color=GROWN, linewidth=1.2)
 
     def show(
         self,
@@ -173,6 +174,7 @@ class Robot:
         known: NDArray[np.float64],
         places: NDArray[np.int32],
         path: NDArray[np.int32],
+        seen: NDArray[np.float32],
     ) -> None:
         """Show a moment.
 
@@ -186,12 +188,16 @@ class Robot:
             Where it was, as (x, y), the last one where it is.
         path : (m, 2) int32
             The path that it follows, as far as it knows it to be free.
+        seen : (k, 2) float32
+            The border of what its sensor covers.
         """
         unknown = np.isnan(known)
         self._map.set_data(_cost(np.where(unknown, weights, known)))
         self._unknown.set_data(_tint(unknown))
-        for line, points in ((self._path, path), (self._way, places), (self._place, places[-1:])):
-            line.set_data(*points.T)
+        self._path.set_data(*path.T)
+        self._way.set_data(*places.T)
+        self._place.set_data(*places[-1:].T)
+        self._sensor.set_data(*seen.T)
 
 
 def draw_picture(axes: Axes, obstacles: NDArray[np.bool_], grown: NDArray[np.bool_] | None) -> None:

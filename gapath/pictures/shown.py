@@ -11,6 +11,9 @@ from gapath.errors import InputError
 if TYPE_CHECKING:
     from gapath.pictures.canvas import Axes as Axes
 
+FRAMES = 60
+"""Pictures that an animation in a notebook has at most."""
+
 
 class Shown:
     """What a notebook shows as a picture with a table."""

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from matplotlib.path import Path as Polygon
 
 import gapath
 from gapath.components import build
@@ -15,7 +16,7 @@ from gapath.driving.retold import Drive
 from gapath.driving.told import drive_events
 from gapath.driving.world import Changes
 from gapath.errors import InputError
-from gapath.events import Called, Outcome
+from gapath.events import Called, Outcome, Stepped
 from gapath.kernels.units import OBSTACLE, SCALE
 from gapath.problem import Problem
 
@@ -138,7 +139,9 @@ def test_its_animation_shows_every_chosen_moment_as_it_was(case):
     assert list(animation.moments)[:: len(animation.moments) - 1] == [0, told.steps]
     for step in (0, told.steps // 2, told.steps):
         show(step)
-        path, way, robot = (line.get_xydata() for line in axes.lines)
+        path, way, robot, seen = (line.get_xydata() for line in axes.lines)
+        fields = [event for event in told.events if isinstance(event, Stepped)][step].fields
+        assert Polygon(seen).contains_points(fields.tolist()).all()
         assert way.tolist() == told.places[: step + 1].tolist()
         assert robot.tolist() == told.places[step : step + 1].tolist()
         tint = axes.images[1].get_array()[..., 3] > 0

@@ -1,6 +1,8 @@
 """Pictures that follow one another."""
 
 import re
+import shutil
+import sys
 
 import numpy as np
 import pytest
@@ -24,6 +26,7 @@ def test_few_moments_are_chosen_evenly_with_both_ends(count):
     found = chosen(range(count))
     assert (found[0], found[-1]) == (0, count - 1)
     assert len(found) == min(count, FRAMES)
+    assert len(chosen(range(count), 9)) == min(count, 9)
     steps = np.diff(found)
     assert len(steps) == 0 or (steps.min() >= 1 and steps.max() - steps.min() <= 1)
 
@@ -81,8 +84,62 @@ def test_a_page_holds_every_picture_and_needs_no_other_file(animation, tmp_path)
     assert 'max="2"' in page
 
 
-@pytest.mark.parametrize("name", ["a.mp4", "a", "none/a.gif"])
+def test_it_is_saved_as_a_webp_without_loss_and_always_the_same(animation, tmp_path):
+    animation.save(tmp_path / "a.webp")
+    with Image.open(tmp_path / "a.webp") as picture:
+        assert picture.n_frames == 3
+        for number, frame in enumerate(animation.frames):
+            picture.seek(number)
+            shown = np.asarray(picture.convert("RGB"))
+            assert np.array_equal(shown, np.asarray(frame.convert("RGB")))
+    again = growing_path(
+        lambda axes: axes.set(xlim=(0, 9)), (6, 10), WAYS, np.array([9.0, 9, 4, 4])
+    )
+    for name in ("a.webp", "a.gif"):
+        animation.save(tmp_path / name)
+        again.save(tmp_path / f"again-{name}")
+        assert (tmp_path / name).read_bytes() == (tmp_path / f"again-{name}").read_bytes()
+
+
+def test_a_film_is_made_by_ffmpeg(animation, tmp_path, monkeypatch):
+    program = tmp_path / "ffmpeg"
+    program.write_text(
+        f"#!{sys.executable}\nimport sys\n"
+        "data = sys.stdin.buffer.read()\n"
+        "open(sys.argv[-1], 'wb').write(' '.join(sys.argv[1:-1]).encode() + b'|' + data)\n"
+    )
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    animation.save(tmp_path / "a.mp4")
+    told, _, pictures = (tmp_path / "a.mp4").read_bytes().partition(b"|")
+    width, height = animation.frames[0].size
+    assert f"-s {width}x{height} -r 8 ".encode() in told
+    assert len(pictures) == 3 * width * height * 3
+    program.write_text("#!/bin/sh\necho no codec >&2\nexit 3\n")
+    with pytest.raises(InputError, match="animation: got ffmpeg: no codec, expected one that"):
+        animation.save(tmp_path / "b.mp4")
+
+
+@pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="no ffmpeg on the path")
+def test_a_film_is_always_the_same(animation, tmp_path):
+    for name in ("a.mp4", "b.mp4"):
+        animation.save(tmp_path / name)
+    film = (tmp_path / "a.mp4").read_bytes()
+    assert film == (tmp_path / "b.mp4").read_bytes()
+    assert film[4:8] == b"ftyp"
+
+
+def test_a_film_without_ffmpeg_is_refused(animation, tmp_path, monkeypatch):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(InputError, match=r"got no ffmpeg, expected ffmpeg on the path, or \.webp"):
+        animation.save(tmp_path / "a.mp4")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", ["a.avi", "a", "none/a.gif"])
 def test_other_files_are_refused(animation, tmp_path, name):
-    with pytest.raises(InputError, match=r"animation: got .*(\.gif or \.html|existing folder)"):
+    with pytest.raises(
+        InputError, match=r"animation: got .*(\.gif, \.mp4, \.html|existing folder)"
+    ):
         animation.save(tmp_path / name)
     assert list(tmp_path.iterdir()) == []

@@ -119,9 +119,11 @@ def test_a_robot_shows_what_it_knows_over_what_is_there(axes):
     robot = Robot(axes, WEIGHTS.shape)
     known = np.array([[0.0, 1.0, np.nan], [np.nan, np.nan, 0.25]])
     places = np.array([[0, 0], [0, 1]], dtype=np.int32)
-    robot.show(WEIGHTS, known, places, places[:0])
+    border = np.array([[0.5, 0.5], [1.5, 2.0], [0.5, 0.5]], dtype=np.float32)
+    robot.show(WEIGHTS, known, places, places[:0], border)
     beneath, tint = axes.images
     assert beneath.get_array().filled(1.0).tolist() == [[0.0, 1.0, 1.0], [0.5, 1.0, 0.25]]
     assert (tint.get_array()[..., 3] > 0).tolist() == np.isnan(known).tolist()
-    path, way, place = (line.get_xydata().tolist() for line in axes.lines)
+    path, way, place, sensor = (line.get_xydata().tolist() for line in axes.lines)
     assert (path, way, place) == ([], [[0, 0], [0, 1]], [[0, 1]])
+    assert sensor == border.tolist()
