@@ -2,31 +2,24 @@
 
 import argparse
 import os
-import signal
-import subprocess
 import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import gapath
 from gapath.commands import crate
+from gapath.commands.viewing import drawing, viewer
 from gapath.errors import InputError, printable, require, require_extra
 from gapath.events import Event, Finished, RunFinished, RunStarted
 from gapath.recorders import mcap
 from gapath.recorders.mcap import FILE
-from gapath.store.durable import LAST, part_of, scratch
+from gapath.store.durable import part_of
 from gapath.store.records import MANIFEST, read_record
 from gapath.store.runfolder import WORK
 from gapath.store.settings import text_of
 from gapath.task import find_task
-
-_LOCAL = "127.0.0.1"  # a viewer also serves; never to other machines
-
-_VIEWER = "import sys; from rerun_cli.__main__ import main; sys.exit(main())"
-"""Run as a module it would drop the viewer's exit code."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -111,7 +104,18 @@ def _parser() -> argparse.ArgumentParser:
     messages.add_argument("folder", type=Path, metavar="DIR", help="the package, a new folder")
     messages.set_defaults(run=_messages)
     crate.add(commands)
-    command("view", _view, "open a log's first trial, or a recording (.rrd), in the Rerun viewer")
+    opened = (
+        "open a log's first trial, those of two logs, or a recording (.rrd), in the Rerun viewer"
+    )
+    viewer.add_web(command("view", _view, opened, many=True))
+    picture = command("picture", _picture, "draw a trial, or one step of it, from a log: a PNG")
+    drawing.add_options(picture, "the PNG to write (default: beside FILE)")
+    step = "a drive's step, a plan's epoch (default: how it ended)"
+    picture.add_argument("--step", type=int, metavar="N", help=step)
+    movie = command("movie", _movie, "draw a trial as a movie, from a log")
+    drawing.add_options(
+        movie, "a .webp, .gif or .mp4, that with ffmpeg (default: .webp beside FILE)"
+    )
     return parser
 
 
@@ -302,36 +306,20 @@ def _messages(arguments: argparse.Namespace) -> int:
 
 def _view(arguments: argparse.Namespace) -> int:
     require_extra("view", "view")
+    paths = [_log_of(path) for path in arguments.files]
+    return viewer.view(arguments.files, paths, _limits(arguments), arguments.web)
+
+
+def _picture(arguments: argparse.Namespace) -> int:
     path = _log_of(arguments.file)
-    require(path.is_file(), path, "no such file", "a log or a recording (.rrd)")
-    with scratch() as folder:
-        if path.suffix != ".rrd":
-            path = folder / _record(path, [0], folder, _limits(arguments))[0]
-        code = _shown(path)
-    if code:
-        print(
-            f"gapath-log: the Rerun viewer ended with code {code}; it needs a display. "
-            f"Make a recording with 'gapath-log rerun' and show it in a browser: "
-            f"rerun --serve-web --bind {_LOCAL} trial-0.rrd",
-            file=sys.stderr,
-        )
-    return 1 if code else 0
+    print(printable(drawing.picture(path, _limits(arguments), arguments)))
+    return 0
 
 
-def _shown(recording: Path) -> int:
-    """Open a recording in the viewer, which ends with this command, and give its exit code."""
-    command = [sys.executable, "-c", _VIEWER, "--bind", _LOCAL, str(recording)]
-    with subprocess.Popen(command, process_group=0) as viewer:
-
-        def end() -> None:
-            with suppress(ProcessLookupError):
-                os.killpg(viewer.pid, signal.SIGTERM)  # also what that has started
-
-        LAST.append(end)
-        try:
-            return viewer.wait()
-        finally:
-            LAST.remove(end)
+def _movie(arguments: argparse.Namespace) -> int:
+    path = _log_of(arguments.file)
+    print(printable(drawing.movie(path, _limits(arguments), arguments)))
+    return 0
 
 
 if __name__ == "__main__":

@@ -1,0 +1,114 @@
+"""``gapath-log picture`` and ``movie``: from a log alone, always the same."""
+
+from functools import partial
+
+import pytest
+from PIL import Image
+from recorders.log_events import example, example_drives, write
+
+from gapath.commands import log as log_cli
+from gapath.commands.viewing.told import drawn, told_trial
+from gapath.driving.retold import Drive
+from gapath.events import DriveFinished, TrialFinished
+from gapath.pictures.shown import png_of
+from gapath.recorders import mcap
+
+
+@pytest.fixture
+def plans(tmp_path):
+    (tmp_path / "plans").mkdir()
+    return write(example(), tmp_path / "plans")
+
+
+@pytest.fixture
+def drives(tmp_path):
+    (tmp_path / "drives").mkdir()
+    return write(example_drives(), tmp_path / "drives")
+
+
+def call(capsys, *argv):
+    code = log_cli.main([str(word) for word in argv])
+    printed = capsys.readouterr()
+    return code, printed.out, printed.err
+
+
+def test_a_trial_of_a_log_is_what_the_library_gives(plans, drives):
+    for log, events, end in (
+        (plans, example(), TrialFinished),
+        (drives, example_drives(), DriveFinished),
+    ):
+        ends = [event for event in events if isinstance(event, end)]
+        told = drawn(*told_trial(log, 1, mcap.USUAL))
+        if isinstance(told, Drive):
+            assert told.steps == ends[1].steps
+        else:
+            assert told.path.tolist() == ends[1].answer.path.tolist()
+            assert told.evolution.best.tolist() == pytest.approx(
+                [e for e in events if getattr(e, "trial", 0) == 1][1].evolution.best, nan_ok=True
+            )
+
+
+def at(animation, moment, axes):
+    animation.scene(axes)(moment)
+
+
+def test_a_picture_is_what_the_library_draws(plans, drives, capsys):
+    for log, step, moment in ((plans, 3, 2), (drives, 4, 4)):
+        told = drawn(*told_trial(log, 1, mcap.USUAL))
+        code, out, err = call(capsys, "picture", log, "--trial", "1")
+        file = log.with_name("trial-1.png")
+        assert (code, out, err) == (0, f"{file}\n", "")
+        assert file.read_bytes() == png_of(told.plot)
+        code, out, _ = call(capsys, "picture", log, "--trial", "1", "--step", step)
+        file = log.with_name(f"trial-1-step-{step}.png")
+        assert (code, out) == (0, f"{file}\n")
+        assert file.read_bytes() == png_of(partial(at, told.animate(), moment))
+
+
+@pytest.mark.parametrize("kind", ["webp", "gif"])
+def test_a_movie_is_always_the_same(kind, plans, drives, capsys, tmp_path):
+    for log in (plans, drives):
+        files = [tmp_path / f"{name}.{kind}" for name in "ab"]
+        for file in files:
+            assert call(capsys, "movie", log, "-o", file) == (0, f"{file}\n", "")
+        assert files[0].read_bytes() == files[1].read_bytes()
+        with Image.open(files[0]) as movie:
+            assert 1 < movie.n_frames <= 240
+
+
+def test_a_movie_of_a_long_course_has_few_pictures(monkeypatch, drives, capsys):
+    monkeypatch.setattr("gapath.commands.viewing.drawing._MOST", 3)
+    assert call(capsys, "movie", drives)[0] == 0
+    with Image.open(drives.with_name("trial-0.webp")) as movie:
+        assert movie.n_frames == 3
+
+
+def test_a_plan_without_epochs_has_a_picture_but_no_movie(tmp_path, capfd, gapath):
+    assert gapath("map=kg18_test1", "planner=astar", "recorder=mcap")[0] == 0
+    (log,) = tmp_path.glob("out/plan/*/run.mcap")
+    assert call(capfd, "picture", log)[0] == 0
+    code, out, err = call(capfd, "movie", log)
+    assert (code, out) == (2, "")
+    assert "got no history, expected the plan of a genetic algorithm" in err
+
+
+BAD = {
+    "trial": (["picture", "--trial", "9"], "trial: got 9, expected a trial of this log, 0 to 1"),
+    "step": (["picture", "--step", "99"], "--step: got 99, expected step 0 to 10 of this trial"),
+    "png": (["picture", "-o", "a.jpg"], "--output: got a.jpg, expected a file name .png"),
+    "kind": (["movie", "-o", "a.avi"], "--output: got a.avi, expected a file name .webp, .gif"),
+    "no ffmpeg": (["movie", "-o", "a.mp4"], "got no ffmpeg, expected ffmpeg on the path"),
+}
+
+
+@pytest.mark.parametrize(("argv", "expected"), BAD.values(), ids=BAD)
+def test_bad_input_is_one_line_and_nothing_is_written(
+    argv, expected, drives, capsys, monkeypatch, tmp_path
+):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    before = sorted(tmp_path.rglob("*"))
+    code, out, err = call(capsys, argv[0], drives, *argv[1:])
+    assert (code, out) == (2, "")
+    assert expected in err and err.count("\n") == 1
+    assert sorted(tmp_path.rglob("*")) == before
