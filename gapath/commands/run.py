@@ -274,7 +274,16 @@ def describe(run: Run, execution: Execution, short: bool) -> str:
         return f"{table}\n\n{skipped}"
     files = [f"  {printable(execution.folder / name)}" for name in execution.files]
     without = [f"without {each}" for each in run.left_out]
-    return "\n".join([table, "", "files", *files, *without])
+    return "\n".join([table, "", "files", *files, *without, *_to_see(execution)])
+
+
+def _to_see(execution: Execution) -> list[str]:
+    """Say how to see a run that has a log or a recording."""
+    shown = sorted(name for name in execution.files if name.endswith((".mcap", ".rrd")))
+    if not shown:
+        return []
+    what = execution.folder if shown[0].endswith(".mcap") else execution.folder / shown[0]
+    return ["", "to see it", f"  gapath-log view {printable(shlex.quote(str(what)))}"]
 
 
 def main() -> None:

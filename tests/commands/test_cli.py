@@ -263,3 +263,13 @@ def test_a_summary_into_a_closed_pipe_is_no_error(tmp_path):
         assert process.stderr.read() == b""
         assert process.wait() == 0
     assert only(tmp_path / "plan").is_dir()
+
+
+@pytest.mark.parametrize("recorder", ["mcap", "[mcap,rerun]", "rerun", "none"])
+def test_a_summary_says_how_to_see_the_run(gapath, tmp_path, recorder):
+    code, out, _ = gapath("map=kg18_test1", "planner=astar", f"recorder={recorder}")
+    assert code == 0
+    (folder,) = (tmp_path / "out").glob("*/*")
+    shown = {"none": None, "rerun": folder / "trial-0.rrd"}.get(recorder, folder)
+    ends = f"to see it\n  gapath-log view {shown}\n" if shown else "status.json\n"
+    assert out.endswith(ends)
