@@ -1,0 +1,1 @@
+"""What settings, columns and messages mean, read from where they are declared."""
