@@ -27,8 +27,43 @@ def _begun(command: str, kept: str = "") -> Iterator[None]:
         yield
 
 
-def main() -> None:
-    """Run the command `gapath.commands.run.main`, without collecting what lives as long as it.
+def main() -> int:
+    """Run the command `gapath`: a run, or what its first word names.
+
+    Returns
+    -------
+    int
+        Exit code of what does no run; a run exits by itself.
+    """
+    first, *rest = sys.argv[1:] or [""]
+    if first in ("-sc", "--shell-completion") and rest and rest[0].startswith("query="):
+        from gapath.commands.told.completing import complete
+
+        return complete(rest[0])
+    if first in _COMMANDS or first == "run":
+        del sys.argv[1]
+    if first in _COMMANDS:
+        return _COMMANDS[first]()
+    if first in _TOLD:
+        return _tell([first, *rest])
+    if {"-h", "--help"} & {*sys.argv}:
+        return _tell(["--help"])
+    _run()
+    return 0
+
+
+_TOLD = ("help", "maps", "planners", "navigators")
+
+
+def _tell(words: list[str]) -> int:
+    with _begun("gapath"):
+        from gapath.commands.told.screen import tell
+
+        return tell(words)
+
+
+def _run() -> None:
+    """Run `gapath.commands.run.main`, without collecting what lives as long as it.
 
     Modules are some hundred thousand objects, none of them garbage. To look for garbage among
     them again and again takes an eighth of a short command's time.
@@ -66,5 +101,9 @@ def genotype() -> int:
         return command()
 
 
+_COMMANDS = {"log": log, "report": report, "genotype": genotype}
+"""First words that are commands of their own, too: ``gapath log`` is ``gapath-log``."""
+
+
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -215,7 +215,7 @@ def one_of(given: object, names: Iterable[str]) -> str:
     """
     names = list(names)
     few = len(names) <= _FEW
-    listed = ", ".join(names) if few else f"{len(names)} names, see gapath --help"
+    listed = ", ".join(names) if few else f"{len(names)} names, see gapath help"
     return f"one of {listed}{did_you_mean(given, {name: name for name in names})}"
 
 

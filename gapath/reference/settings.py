@@ -115,7 +115,7 @@ def remarks(text: str) -> Remarks:
     Remarks
         A comment that goes on in lines of its own is one.
     """
-    about: list[str] = []
+    title: list[str] = []
     found: dict[str, str] = {}
     stack: list[tuple[int, str]] = []
     for line in text.splitlines():
@@ -129,8 +129,13 @@ def remarks(text: str) -> Remarks:
             if key or (name and not before.strip()):
                 found[name] = " ".join([found.get(name, ""), comment.strip()]).strip()
             elif not stack:
-                about.append(comment.strip())
-    return Remarks(" ".join(about), found)
+                title.append(comment.strip())
+    return Remarks(" ".join(title), found)
+
+
+def about(group: str, name: str) -> str:
+    """Say what a YAML is: its first comment."""
+    return remarks(text_of(group, name)).about
 
 
 @lru_cache
@@ -152,17 +157,17 @@ _PLACE = re.compile(
 )
 
 
-def _of_paper(remark: str, about: str) -> str:
+def _of_paper(remark: str, title: str) -> str:
     """Say of which paper the first place is that a remark names; the YAML tells."""
-    place, paper = _PLACE.search(remark), re.search(r"KG18|S04|M22", about)
+    place, paper = _PLACE.search(remark), re.search(r"KG18|S04|M22", title)
     if place is None or place[1] or paper is None:
         return remark
     return f"{remark[: place.start()]}{paper[0]} {remark[place.start() :]}"
 
 
-def source_of(remark: str, about: str) -> str:
+def source_of(remark: str, title: str) -> str:
     """Say where a value comes from: a place in a paper, an assumption, or gapath itself."""
-    place = _PLACE.search(_of_paper(remark, about)) or _PLACE.search(_of_paper(about, about))
+    place = _PLACE.search(_of_paper(remark, title)) or _PLACE.search(_of_paper(title, title))
     assumed = "assumed" if re.search(r"\bassumed\b", remark) else ""
     cited = f"{place[1] or ''} {place[2]}".strip() if place and place[1] else ""
     if remark and not _PLACE.search(remark):  # then the title's place is another setting's
@@ -202,11 +207,11 @@ def _settings(
             yield _setting(field, f"{prefix}.{here}", values[field.name], remark, said.about)
 
 
-def _setting(field: Field, name: str, value: Any, remark: str, about: str) -> Setting:
+def _setting(field: Field, name: str, value: Any, remark: str, title: str) -> Setting:
     found = re.search(r" ?\[([a-z][a-z ]*)\]$", remark)
     unit, plain = (found[1], remark[: found.start()]) if found else ("", remark)
     return Setting(name, value, field.type, field.meaning, field.range, unit,
-                   _of_paper(plain, about), source_of(plain, about))  # fmt: skip
+                   _of_paper(plain, title), source_of(plain, title))  # fmt: skip
 
 
 @lru_cache
@@ -224,6 +229,8 @@ def root() -> Preset:
             known = Field(field.name, field.type, field.meaning, right, None)
             remark = said.of.get(field.name, "")
             own.append(_setting(known, field.name, values[field.name], remark, said.about))
+    for group, inner in groups_of_tasks().items():
+        own += _settings(inner, group, "", values[group], _within(group, said))
     return Preset("", ROOT, "", said.about, tuple(own))
 
 
@@ -248,3 +255,14 @@ def groups_of_tasks() -> dict[str, SettingsClass]:
 def presets(group: str) -> list[Preset]:
     """Give all that can be chosen in a group."""
     return [preset(group, name) for name in yaml_names(group)]
+
+
+def shown(value: Any) -> str:
+    """Write a value as a YAML or a command line has it."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key}: {shown(each)}" for key, each in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(shown, value)) + "]"
+    if value is None or isinstance(value, bool):
+        return str(value).lower().replace("none", "null")
+    return str(value)

@@ -57,10 +57,8 @@ class Module:
     """
 
     def __init__(self, name: str) -> None:
-        spec = importlib.util.find_spec(name)
-        assert spec is not None and spec.origin is not None, name
         self.name = name
-        self.tree = ast.parse(Path(spec.origin).read_text("utf-8"))
+        self.tree = ast.parse(_file(name).read_text("utf-8"))
 
     @cached_property
     def _own(self) -> dict[str, ast.AST]:
@@ -137,6 +135,18 @@ class Module:
                 return name
             return ", ".join(value) if isinstance(value, list) else str(value)
         return str(self.value(part, env))
+
+
+def _file(name: str) -> Path:
+    """Find a module's file. Python would import the packages that the module lies in."""
+    top, *rest = name.split(".")
+    spec = importlib.util.find_spec(top)
+    assert spec is not None, name
+    if not rest and spec.origin is not None:
+        return Path(spec.origin)
+    places = [Path(place, *rest) for place in spec.submodule_search_locations or ()]
+    files = [file for place in places for file in (place / "__init__.py", Path(f"{place}.py"))]
+    return next(file for file in files if file.is_file())
 
 
 def _assigned(lines: Iterable[ast.AST]) -> Iterator[tuple[str, ast.AST]]:

@@ -6,7 +6,7 @@ from importlib.metadata import version
 
 import pytest
 
-MAPS = r"one of \d+ names, see gapath --help"
+MAPS = r"one of \d+ names, see gapath help"
 ROOT = "choice, corner_cutting, drive, experiment, force, kernels, map, name, navigator, output, "
 ROOT += "planner, provenance, recorder, scenario, search, seed, shard, shards, task, threads, "
 ROOT += "trials"

@@ -46,9 +46,8 @@ def test_no_setting_is_left_out():
         for name in yaml_names(group):
             prefix = f"{group}.{name}" if group == "recorder" else group
             names = {setting.name for setting in preset(group, name).settings}
-            assert names == {f"{prefix}.{key}" for key in yaml_values(group, name)} - {
-                f"{prefix}.kind"
-            }
+            given = yaml_values(group, name).keys() - {"kind"}
+            assert names == {f"{prefix}.{key}" for key in given}
     names = {setting.name for setting in root().settings}
     assert {"seed", "drive.sensor.range", "scenario.drawn", "search.objective"} <= names
 
@@ -70,6 +69,7 @@ def test_a_range_is_the_one_that_is_checked(group, name, setting):
     least, most = map(int, WHOLE.match(told.range).groups())
     for outside in (least - 1, most + 1):
         values = yaml_values(group, name) | {setting: outside}
+        values |= {"path": "world.json"} if "path" in values else {}
         with pytest.raises(InputError) as caught:
             build(group, values, group)
         assert caught.value.expected == told.range
@@ -89,9 +89,7 @@ def test_ranges_of_many_kinds_are_read():
 
 
 def test_comments_are_read_as_they_stand():
-    text = (
-        "# @package x\n# What\n# it is.\na: 1 # one # two [fields]\n  # more\nb:\n  c: x  # in b\n"
-    )
+    text = "# @package x\n# What\n# it is.\na: 1 # one # two\n  # more\nb:\n  c: x  # in b\n"
     assert remarks(text) == Remarks("What it is.", {"a": "one # two more", "b.c": "in b"})
 
 

@@ -1,0 +1,1 @@
+"""What the command tells without doing a run: help, lists, pictures, completions."""
