@@ -1,7 +1,6 @@
 """What of ``gapath-log`` is about crates: runs handed over, and done again."""
 
 import argparse
-import glob
 import json
 import sys
 from collections.abc import Iterator, Sequence
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from gapath.errors import printable, require
 from gapath.recorders import mcap
 from gapath.recorders.mcap import FILE
-from gapath.store.records import MANIFEST, RunRecord, is_run, read_record
+from gapath.store.records import RunRecord, find_run, is_run, read_record
 
 if TYPE_CHECKING:
     from gapath.crates.description import Packed
@@ -32,8 +31,7 @@ def add(commands: Any) -> None:
     about = "the folder of a run or an experiment, or its name in --outputs: the beginning of a key"
     crate.add_argument("given", metavar="KEY|EXPERIMENT", help=about)
     crate.add_argument("target", type=Path, metavar="DIR", help="the folder that it becomes")
-    where = "where names are looked for (default: outputs)"
-    crate.add_argument("--outputs", type=Path, default=Path("outputs"), metavar="DIR", help=where)
+    add_outputs(crate)
     crate.add_argument("--author", default="", metavar="NAME", help="who did the runs")
     about = "the author's organization and its address"
     crate.add_argument("--organization", nargs=2, metavar=("NAME", "URL"), help=about)
@@ -49,6 +47,12 @@ def add(commands: Any) -> None:
     repeat.add_argument("--yes", action="store_true", help="also if it takes long")
     repeat.add_argument("--large", action="store_true", help="also logs that are unusually large")
     repeat.set_defaults(run=_repeat)
+
+
+def add_outputs(command: argparse.ArgumentParser) -> None:
+    """Add the option that says where runs are looked for which are named by their keys."""
+    where = "where names are looked for (default: outputs)"
+    command.add_argument("--outputs", type=Path, default=Path("outputs"), metavar="DIR", help=where)
 
 
 def _crate(arguments: argparse.Namespace) -> int:
@@ -97,18 +101,10 @@ def _notes(packed: "Packed") -> Iterator[str]:
 
 def _runs(given: str, outputs: Path) -> list[RunRecord]:
     """Find the run, or those of the experiment, that somebody named."""
-    folder = Path(given)
-    if folder.name == MANIFEST:
-        folder = folder.parent
-    if given and "/" not in given and (outputs / given).is_dir():
-        folder = outputs / given
-    elif not given or not folder.is_dir():
-        found = sorted(filter(is_run, outputs.glob(f"*/{glob.escape(given)}*"))) if given else []
-        right = f"a run or an experiment in {outputs}, or its folder"
-        if len(found) > 1:
-            right = f"more of it: {', '.join(path.name for path in found)} begin so"
-        require(len(found) == 1, "KEY|EXPERIMENT", given, right)
-        folder = found[0]
+    folder = outputs / given if "/" not in given else Path(given)
+    folder = folder if given and folder.is_dir() and not is_run(folder) else Path(given)
+    if not given or not folder.is_dir() or is_run(folder):
+        folder = find_run(outputs, given)
     folder = folder.resolve()
     if is_run(folder):
         return [read_record(folder)]

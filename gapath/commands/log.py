@@ -2,6 +2,7 @@
 
 import argparse
 import os
+import re
 import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -16,7 +17,7 @@ from gapath.events import Event, Finished, RunFinished, RunStarted
 from gapath.recorders import mcap
 from gapath.recorders.mcap import FILE
 from gapath.store.durable import part_of
-from gapath.store.records import MANIFEST, read_record
+from gapath.store.records import MANIFEST, find_run, read_record
 from gapath.store.runfolder import WORK
 from gapath.store.settings import text_of
 from gapath.task import find_task
@@ -58,7 +59,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="gapath-log",
         description=f"Look into the log of a run ({FILE}) and work with it. Where a FILE is "
-        "read, the folder of a run or its manifest will do, too.",
+        "read, the run's key will do, too, its beginning, its folder or its manifest.",
     )
     parser.add_argument("--version", action="version", version=f"gapath-log {gapath.__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
@@ -66,8 +67,9 @@ def _parser() -> argparse.ArgumentParser:
     def command(name: str, run: Any, text: str, many: bool = False) -> argparse.ArgumentParser:
         sub = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
         given = ("files", "+") if many else ("file", None)
-        about = f"a log, such as {FILE}"
+        about = f"a log, such as {FILE}, or a run"
         sub.add_argument(given[0], nargs=given[1], type=Path, metavar="FILE", help=about)
+        crate.add_outputs(sub)
         sub.add_argument("--large", action="store_true", help="read one that is unusually large")
         sub.set_defaults(run=run)
         return sub
@@ -130,11 +132,11 @@ def _trials(text: str) -> list[int]:
         raise argparse.ArgumentTypeError(f"got {text!r}, expected numbers such as 0,3") from None
 
 
-def _log_of(path: Path) -> Path:
-    """Give the log that a file is, or that a run has whose folder or manifest it is."""
-    folder = path.parent if path.name == MANIFEST else path
-    if not folder.is_dir():
+def _log_of(path: Path, arguments: argparse.Namespace) -> Path:
+    """Give the log that a file is, or that a run has which is named (`find_run`)."""
+    if (path.is_file() and path.name != MANIFEST) or not (path.exists() or _is_key(path)):
         return path
+    folder = find_run(arguments.outputs, str(path))
     log, run = folder / FILE, read_record(folder)
     part = part_of(folder / WORK / FILE)
     rest = f"; what is left: gapath-log salvage {part}" if part.is_file() else ""
@@ -143,8 +145,13 @@ def _log_of(path: Path) -> Path:
     return log
 
 
+def _is_key(path: Path) -> bool:
+    """Tell whether it reads like a run's key, alone or behind an experiment's name."""
+    return re.fullmatch(r"([\w-]+/)?[0-9a-f]{1,16}", str(path)) is not None
+
+
 def _info(arguments: argparse.Namespace) -> int:
-    path = _log_of(arguments.file)
+    path = _log_of(arguments.file, arguments)
     messages: Counter[str] = Counter()
     run, ended, finished, fault = _summary(mcap.look(path, _limits(arguments), messages))
     state = "whole" if ended else "whole, but the run was interrupted"
@@ -195,6 +202,8 @@ def _summary(events: Iterator[Event]) -> tuple[RunStarted, bool, Counter[str], I
 
 def _salvage(arguments: argparse.Namespace) -> int:
     path = arguments.file
+    if path.is_dir() or (_is_key(path) and not path.exists()):
+        path = part_of(find_run(arguments.outputs, str(path)) / WORK / FILE)
     place = path.parent.parent if path.parent.name == WORK else path.parent  # the next run empties
     name = path.stem if path.suffix == ".part" else f"{path.stem}.salvaged.mcap"
     output = arguments.output or place / name
@@ -228,7 +237,7 @@ def _verify(arguments: argparse.Namespace) -> int:
 def _verified(path: Path, arguments: argparse.Namespace) -> int:
     """Verify a log, say in a line what came of it, and give the exit code."""
     try:
-        code, found = _compared(_log_of(path), arguments)
+        code, found = _compared(_log_of(path, arguments), arguments)
     except (InputError, OSError) as error:
         return _complain(error)
     print(printable(f"{path}: {found}"), flush=True)
@@ -256,7 +265,7 @@ def _compared(path: Path, arguments: argparse.Namespace) -> tuple[int, str]:
 
 def _rerun(arguments: argparse.Namespace) -> int:
     require_extra("rerun", "view")
-    path = _log_of(arguments.file)
+    path = _log_of(arguments.file, arguments)
     folder = arguments.folder or path.parent
     folder.mkdir(parents=True, exist_ok=True)
     for name in _record(path, arguments.trials, folder, _limits(arguments)):
@@ -286,7 +295,7 @@ def _record(path: Path, trials: list[int], folder: Path, limits: mcap.Limits) ->
 def _bag(arguments: argparse.Namespace) -> int:
     from gapath.recorders.mcap.ros.animation import animate
 
-    log, folder, limits = _log_of(arguments.file), arguments.folder, _limits(arguments)
+    log, folder, limits = _log_of(arguments.file, arguments), arguments.folder, _limits(arguments)
     for path in animate(log, folder, arguments.trials, arguments.step_s, limits):
         print(printable(path))
     return 0
@@ -306,18 +315,18 @@ def _messages(arguments: argparse.Namespace) -> int:
 
 def _view(arguments: argparse.Namespace) -> int:
     require_extra("view", "view")
-    paths = [_log_of(path) for path in arguments.files]
+    paths = [_log_of(path, arguments) for path in arguments.files]
     return viewer.view(arguments.files, paths, _limits(arguments), arguments.web)
 
 
 def _picture(arguments: argparse.Namespace) -> int:
-    path = _log_of(arguments.file)
+    path = _log_of(arguments.file, arguments)
     print(printable(drawing.picture(path, _limits(arguments), arguments)))
     return 0
 
 
 def _movie(arguments: argparse.Namespace) -> int:
-    path = _log_of(arguments.file)
+    path = _log_of(arguments.file, arguments)
     print(printable(drawing.movie(path, _limits(arguments), arguments)))
     return 0
 

@@ -12,7 +12,7 @@ from functools import cached_property
 from pathlib import Path
 
 from gapath.discovery import kinds
-from gapath.errors import InputError, require
+from gapath.errors import InputError, did_you_mean, require
 from gapath.store.durable import named, write_whole
 from gapath.store.results import Results
 from gapath.store.runfolder import BEFORE, LOCK, PROGRESS, WORK, RunFolder, is_locked
@@ -270,32 +270,37 @@ def is_run(folder: Path) -> bool:
     return any((folder / mark).exists() for mark in (STATUS, MANIFEST, CONFIG, TRIALS))
 
 
-def find_run(outputs: Path, key: str) -> Path:
-    """Find one run's folder.
+def find_run(outputs: Path, given: str) -> Path:
+    """Find the run that somebody names: everywhere where one is named.
 
     Parameters
     ----------
     outputs : Path
         The folder that holds ``<experiment>/<key>/``.
-    key : str
-        The run's key, or so much of its beginning that no other run's begins alike.
+    given : str
+        The run's folder, or a file in it; or its key, or so much of its beginning that no other
+        run's begins alike, behind the name of its experiment or not.
 
     Returns
     -------
     Path
-        Its folder.
-
-    Raises
-    ------
-    InputError
-        If there is no such run, or more than one.
+        Its folder; raises InputError if there is no such run, or more than one.
     """
+    place, begin = Path(given), glob.escape(given)
+    if given and place.exists():  # a file may lie in its run's folder for work in progress
+        for folder in (place, place.parent, place.parent.parent):
+            if is_run(folder):
+                return folder
+    require(not place.is_absolute(), given, "no run", "the folder of a run that is whole, or a key")
     require(outputs.is_dir(), outputs, "no such folder", "a folder with run folders")
-    require(key != "", "key", key, "the beginning of a run's key")
-    found = sorted(path for path in outputs.glob(f"*/{glob.escape(key)}*") if is_run(path))
+    require(given != "", "key", given, "the beginning of a run's key")
+    found = sorted(filter(is_run, outputs.glob(f"{begin}*" if "/" in given else f"*/{begin}*")))
     names = [f"{path.parent.name}/{path.name}" for path in found]
-    require(bool(found), outputs, f"no run {key}...", "a key that `gapath-report runs` lists")
-    require(len(found) == 1, "key", f"{key}, the beginning of {', '.join(names)}", "a longer one")
+    if not found:
+        keys = {path.name[: len(given)]: path.name for path in outputs.glob("*/*") if is_run(path)}
+        right = f"a key that `gapath-report runs` lists{did_you_mean(given, keys)}"
+        raise InputError(outputs, f"no run {given}...", right)
+    require(len(found) == 1, "key", f"{given}, the beginning of {', '.join(names)}", "a longer one")
     return found[0]
 
 

@@ -18,7 +18,7 @@ from gapath.pipelines.asking.sql import asked
 from gapath.pipelines.reading.frame import described, matching
 from gapath.pipelines.reading.query import near
 from gapath.pipelines.reading.tags import said_of
-from gapath.store.records import RunRecord, find_runs
+from gapath.store.records import RunRecord, find_run, find_runs
 
 
 class _Parser(argparse.ArgumentParser):
@@ -45,7 +45,7 @@ def parser() -> argparse.ArgumentParser:
     add = made.add_argument
     add("outputs", type=Path, nargs="?", default=Path("outputs"), help="folder with "
         "<experiment>/<key>/ [outputs]")  # fmt: skip
-    add("keys", nargs="*", metavar="KEY", help="only these runs; the beginning of a key will do")
+    add("keys", nargs="*", metavar="KEY", help="only these runs: folders, files in them, or beginnings of keys")
     add("--where", metavar="SQL", help="only runs that fulfil a condition: \"map = 'kg18_test3' "
         "and planner.population >= 80\"")  # fmt: skip
     add("--last", type=int, metavar="N", help="only the N newest of them")
@@ -99,7 +99,7 @@ def _places(given: argparse.Namespace, frame: pd.DataFrame) -> list[int]:
     """Choose runs: their places in the frame, the oldest first."""
     places: list[int] = frame.reset_index().sort_values(["date", "key"]).index.tolist()
     if given.keys:
-        wanted = {_key(beginning, frame.index) for beginning in given.keys}
+        wanted = {find_run(given.outputs, name).name for name in given.keys}
         places = [place for place in places if frame.index[place] in wanted]
     if given.where is not None:
         fulfil = set(matching(frame, given.where))
@@ -108,13 +108,6 @@ def _places(given: argparse.Namespace, frame: pd.DataFrame) -> list[int]:
         require(given.last > 0, "--last", given.last, "how many runs")
         places = places[-given.last :]
     return places
-
-
-def _key(beginning: str, keys: Iterable[str]) -> str:
-    found = sorted({key for key in keys if beginning and key.startswith(beginning)})
-    right = f"more of it: {', '.join(found)} begin so" if found else "the beginning of a run's key"
-    require(len(found) == 1, "KEY", beginning, right)
-    return found[0]
 
 
 def _counting(frame: pd.DataFrame, runs: Sequence[RunRecord], places: Sequence[int]) -> list[int]:

@@ -133,8 +133,8 @@ def test_a_run_without_a_log_is_told(made, capfd):
 
 
 BAD = {
-    "nothing of that name": (["crate", "nowhere", "crate"], "KEY|EXPERIMENT: got nowhere"),
-    "no name": (["crate", "", "crate", "--outputs", "nowhere"], "KEY|EXPERIMENT: got ''"),
+    "nothing of that name": (["crate", "nowhere", "crate"], "outputs: got no"),
+    "no name": (["crate", "", "crate", "--outputs", "nowhere"], "nowhere: got no such folder"),
     "all experiments": (["crate", "out", "crate"], "out: got no run"),
     "a folder that has something": (["crate", "out/office", "full"], "full: got something"),
     "a file": (["crate", "out/office", "office.map"], "office.map: got something"),

@@ -121,7 +121,11 @@ def test_a_run_is_asked_for_by_the_beginning_of_its_key(ask, tmp_path, make_run)
     for key in ("abcdef1", "abcdef2"):
         make_run(tmp_path, "e", "kg18_test1", "ga1", n=2, log=False, key=key, seed=int(key[-1]))
     code, _, said = ask("abcdef", folder=tmp_path)
-    assert code == 2 and "KEY: got abcdef, expected more of it: abcdef1, abcdef2 begin so" in said
+    assert code == 2 and "key: got abcdef, the beginning of e/abcdef1, e/abcdef2, expected" in said
+    folder, file = tmp_path / "e" / "abcdef1", tmp_path / "e" / "abcdef2" / "status.json"
+    for given in (["e/abcdef1", "abcdef2"], [folder, file]):
+        code, text, _ = ask(*map(str, given), folder=tmp_path)
+        assert (code, text) == (0, ask(folder=tmp_path)[1])
     assert [line.split()[0] for line in ask(folder=tmp_path)[1].splitlines()[2:]] == [
         "abcdef1", "abcdef2",
     ]  # fmt: skip
@@ -141,8 +145,8 @@ def test_a_run_is_asked_for_by_the_beginning_of_its_key(ask, tmp_path, make_run)
         (["--group", "map", "--sort", "seed"], "--sort: got seed, expected a column"),
         (["--group", "map", "--columns", "seed"], "--columns: got seed, expected a column"),
         (["--last", "0"], "--last: got 0, expected"),
-        (["zzz"], "KEY: got zzz, expected the beginning of a run's key"),
-        ([""], "KEY: got '', expected the beginning of a run's key"),
+        (["zzz"], "got no run zzz..., expected a key that"),
+        ([""], "key: got '', expected the beginning of a run's key"),
         (["--sql", "select 1", "--group", "map"], "--group: got --sql, too, expected only one"),
         (["--sql", "select 1", "--sort", "map"], "--sort: got --sql, too, expected only one"),
         (["--sql", "select nope from runs"], "--sql: got select nope from runs, expected a column"),

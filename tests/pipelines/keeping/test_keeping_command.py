@@ -41,6 +41,14 @@ def listed(report, outputs, *words):
     return json.loads(out)
 
 
+def test_a_run_may_be_named_by_its_folder_a_file_or_its_experiment(report, outputs, monkeypatch):
+    monkeypatch.chdir(outputs / "mine" / "abcd000000000000")
+    folder = outputs / "mine" / "abcd000000000000"
+    for given in (folder, folder / "manifest.json", "manifest.json", ".", "mine/abcd"):
+        code, text, _ = report("tag", given, "base", "--outputs", outputs)
+        assert (code, text.split(": ")[1]) == (0, "tag base\n")
+
+
 def test_a_run_is_tagged_and_noted_and_the_list_says_so(report, outputs):
     where = ("--outputs", outputs)
     assert report("tag", "abcd", "base", MARKUP, *where) == (
