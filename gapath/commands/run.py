@@ -133,6 +133,10 @@ def run_of(config: DictConfig, hydra: DictConfig, words: Sequence[str]) -> Run:
     for name in settings_of(words):
         useful = not name.startswith("search.") or searches(hydra)
         require(useful, name, "no search", "hydra/sweeper=optuna, which does one")
+    said = any(word.startswith("hydra.mode=") for word in sys.argv)  # Hydra adds its own
+    good = hydra.mode == RunMode.MULTIRUN or said or not searches(hydra)
+    right = "gapath -m, which searches; hydra.mode=RUN does one run"
+    require(good, "hydra/sweeper", f"{hydra.runtime.choices['hydra/sweeper']} without -m", right)
     own = OmegaConf.masked_copy(config, [str(key) for key in config if key != "hydra"])
     return make_run(own, dict(hydra.runtime.choices), settings_of(words))
 

@@ -188,6 +188,13 @@ def test_what_is_wrong_is_told_before_anything_is_tried(gapath, tmp_path, words,
     assert not (tmp_path / "out").exists()
 
 
+def test_a_search_without_saying_so_is_refused(gapath, tmp_path):
+    code, text, errors = gapath("hydra/sweeper=optuna", "search.objective=cost")
+    assert (code, text, errors.count("\n")) == (cli.BAD_INPUT, "", 1)
+    assert errors.startswith("gapath: hydra/sweeper: got optuna without -m, expected gapath -m")
+    assert not (tmp_path / "out").exists()
+
+
 def test_a_figure_that_a_method_does_not_have_ends_the_search(gapath):
     words = [word for word in BASE if not word.startswith("planner")]
     code, text, errors = gapath(*words, "planner=astar,dijkstra")
