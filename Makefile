@@ -98,6 +98,10 @@ coverage: $(VENV)/ready ## measure which lines the tests run; into build/coverag
 	@$(BIN)/coverage report --skip-covered
 	@echo "line by line: build/coverage/index.html"
 
+.PHONY: reference
+reference: $(VENV)/ready ## write the pages of settings, columns and messages anew, from the sources
+	@$(BIN)/python -m gapath.reference docs
+
 .PHONY: check
 check: $(VENV)/ready ## lint, check formats, types and the borders between layers
 	@$(BIN)/ruff check

@@ -21,6 +21,7 @@ from gapath.api import load_map
 from gapath.commands import genotype as genotype_cli
 from gapath.commands import log as log_cli
 from gapath.commands import run as cli
+from gapath.commands.told import screen
 from gapath.mapio.movingai import read_scenario
 from gapath.pipelines.asking import command as asking
 from gapath.pipelines.compare import command as comparing
@@ -221,6 +222,12 @@ def check_report(words):
 
 def check_gapath(words):
     """Check the jobs of a command: of a sweep as many as bring every value of each setting."""
+    if words[0] in screen.WORDS:
+        assert screen.tell(words) == 0
+        return
+    if words[0] in ("log", "report", "genotype", "run"):
+        CHECKS[f"gapath-{words[0]}".removesuffix("-run")](words[1:])
+        return
     given = get_args_parser().parse_args(words)
     if given.shell_completion or given.help:
         return
