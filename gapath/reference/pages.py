@@ -1,6 +1,5 @@
 """The pages that are made from the sources: docs/settings.md and docs/columns.md."""
 
-
 from gapath.discovery import kinds, load
 from gapath.recorders.mcap.format import TOPICS, schema
 from gapath.reference.columns import COLUMNS
