@@ -68,6 +68,20 @@ def test_its_planner_runs_is_recorded_and_reproduced(site, tmp_path):
     )
 
 
+def test_its_names_are_listed_and_told(site, tmp_path):
+    def told(*words):
+        command = [sys.executable, "-m", "gapath", *words]
+        environment = {**os.environ, "PYTHONPATH": str(site)}
+        return subprocess.run(
+            command, capture_output=True, text=True, check=True, cwd=tmp_path, env=environment
+        ).stdout
+
+    assert "\none_bend  " in told("planners")
+    assert "\nweights  " in told("maps")
+    assert "\nwait_and_see  " in told("navigators")
+    assert "planner.tries = 100\n      Fields to try, at least 1." in told("help", "one_bend")
+
+
 def test_its_planner_its_table_and_its_metric_stand_in_the_report_of_a_sweep(site, tmp_path):
     sweep = ("gapath", "-m", "name=bends", "map=kg18_test1,kg18_test2", "planner=one_bend",
              "planner.tries=5,50", "recorder=none", "trials=20")  # fmt: skip
