@@ -127,3 +127,12 @@ def test_a_large_map_is_not_copied_to_be_written_or_read(large, tmp_path):
     salvaged, _ = bytes_a_field(lambda: mcap.salvage(log, saved))
     assert saved.read_bytes() == log.read_bytes()
     assert written < 5 and read < 13 and same < 18 and salvaged < 15
+
+
+def test_a_map_of_one_weight_is_read_however_tightly_it_is_packed(tmp_path):
+    grid = GridMap("flat", np.zeros((1500, 2000)))
+    run = replace(example()[0], problem=Problem(grid, (0, 0), (1999, 1499)))
+    log = write([run, RunFinished(0, 0, 0)], tmp_path)
+    assert log.stat().st_size < 20_000
+    first, _ = mcap.read_events(log, mcap.USUAL)
+    assert np.array_equal(first.problem.map.weights, grid.weights)

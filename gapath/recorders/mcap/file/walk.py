@@ -56,7 +56,7 @@ LARGE = Limits(MAX_CHUNK, 1 << 31, MAX_LOG, 2**32)
 
 _FEW = 64  # metadata and attachments, whose number is that of the maps and some more
 _TEXT = 4 << 20  # bytes of metadata, or of a schema or channel
-_RATIO, _SMALL = 1000, 1 << 20  # no log of ours is packed so tightly, if it is not small
+_RATIO, _SMALL = 1000, 1 << 24  # only a large map of one weight is packed so tightly
 _HEAD = struct.Struct("<BQ")
 _CHUNK = struct.Struct("<QQQI")
 _MESSAGE = struct.Struct("<HIQQ")
