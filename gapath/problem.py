@@ -25,10 +25,7 @@ if TYPE_CHECKING:
 
 
 class CornerCutting(IntEnum):
-    """Whether a diagonal step may pass between or beside obstacles.
-
-    A field outside the map counts as an obstacle here too.
-    """
+    """Whether a diagonal step may pass obstacles; a field outside the map counts as one, too."""
 
     ALLOW = units.ALLOW
     """Every diagonal step between free fields is allowed (KG18 sets no rule)."""
@@ -298,9 +295,9 @@ class Plan(Answer, Shown):
         from gapath.pictures.animation import growing_path
 
         problem, history = self._asked(), self._history()
-        shape, ways, best = problem.map.weights.shape, history.way_points, history.best
-        crowds = history.population.crowds(len(best)) if history.population else ()
-        return growing_path(problem.plot, shape, ways, best, crowds, most)
+        shape, best, population = problem.map.weights.shape, history.best, history.population
+        crowds = population.crowds(len(best)) if population else ()
+        return growing_path(problem.plot, shape, history.way_points, best, crowds, most)
 
     def shares(self) -> dict[str, float]:
         """Tell by how much each way of making and changing a path lowered the cost: name -> cost.

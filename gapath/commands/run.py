@@ -286,7 +286,10 @@ def _to_see(execution: Execution) -> list[str]:
     shown = sorted(name for name in execution.files if name.endswith((".mcap", ".rrd")))
     if not shown:
         return []
-    what = execution.folder if shown[0].endswith(".mcap") else execution.folder / shown[0]
+    folder = execution.folder
+    what = folder if shown[0].endswith(".mcap") else folder / shown[0]
+    if what == folder and folder.parent.parent == Path("outputs"):  # where a key is looked for
+        what = Path(folder.name)
     return ["", "to see it", f"  gapath-log view {printable(shlex.quote(str(what)))}"]
 
 

@@ -105,7 +105,7 @@ def column(name: str) -> tuple[str, str]:
 
 def _of_topic(topic: str) -> list[str]:
     """Describe a topic's messages: standard ones by name, our own with each field."""
-    name, text = TOPICS[topic], schema(topic).decode()
+    name, text = TOPICS[topic], schema(TOPICS[topic]).decode()
     lines = ["", f"### {topic}", "", f"`{name}`"]
     if not name.startswith("gapath_msgs/"):
         return lines

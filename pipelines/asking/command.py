@@ -45,7 +45,12 @@ def parser() -> argparse.ArgumentParser:
     add = made.add_argument
     add("outputs", type=Path, nargs="?", default=Path("outputs"), help="folder with "
         "<experiment>/<key>/ [outputs]")  # fmt: skip
-    add("keys", nargs="*", metavar="KEY", help="only these runs: folders, files in them, or beginnings of keys")
+    add(
+        "keys",
+        nargs="*",
+        metavar="KEY",
+        help="only these runs: folders, files in them, or beginnings of keys",
+    )
     add("--where", metavar="SQL", help="only runs that fulfil a condition: \"map = 'kg18_test3' "
         "and planner.population >= 80\"")  # fmt: skip
     add("--last", type=int, metavar="N", help="only the N newest of them")

@@ -27,7 +27,11 @@ def parser(name: str) -> argparse.ArgumentParser:
     made = argparse.ArgumentParser(f"gapath-report {name}", description=_ABOUT[name])
     add = made.add_argument
     if name in ("tag", "note"):
-        add("key", metavar="KEY", help="the run: the beginning of its key, its folder or a file in that")
+        add(
+            "key",
+            metavar="KEY",
+            help="the run: the beginning of its key, its folder or a file in that",
+        )
     if name == "tag":
         add("tags", nargs="*", metavar="TEXT", help="a tag")
         add("--remove", action="store_true", help="take these tags away instead")

@@ -28,7 +28,8 @@ def test_one_run_prints_a_summary_and_its_files(gapath, tmp_path):
     assert "status        found" in text
     assert "(reconstructed)" in text
     folder = only(tmp_path / "out" / "plan")
-    listed = [line.strip() for line in text.splitlines() if line.startswith("  ")]
+    files = text.partition("to see it")[0].splitlines()
+    listed = [line.strip() for line in files if line.startswith("  ")]
     names = sorted(p.name for p in folder.iterdir() if p.name != runfolder.LOCK)
     assert listed and sorted(line.rpartition("/")[2] for line in listed) == names
     assert "trial-0.rrd" in names and "run.mcap" in names
@@ -37,7 +38,7 @@ def test_one_run_prints_a_summary_and_its_files(gapath, tmp_path):
     manifest = json.loads((folder / "manifest.json").read_bytes())
     assert manifest["command"].startswith("gapath map=kg18_test1 planner=ga1 seed=7")
     files = set(manifest["files"]) - {"gapath.diff"}  # of a checkout that was edited
-    assert {"config.yaml", "trials.parquet", "run.mcap", "trial-0.rrd"} == files
+    assert files == {"config.yaml", "trials.parquet", "run.mcap", "metadata.yaml", "trial-0.rrd"}
 
 
 def test_a_picture_of_any_name_says_how_it_was_read(gapath, tmp_path):
@@ -272,3 +273,10 @@ def test_a_summary_says_how_to_see_the_run(gapath, tmp_path, recorder):
     shown = {"none": None, "rerun": folder / "trial-0.rrd"}.get(recorder, folder)
     ends = f"to see it\n  gapath-log view {shown}\n" if shown else "status.json\n"
     assert out.endswith(ends)
+
+
+def test_where_runs_are_looked_for_a_key_says_how_to_see_it(gapath, tmp_path):
+    code, out, _ = gapath("map=kg18_test1", "planner=astar", "recorder=mcap", output=None)
+    (folder,) = (tmp_path / "outputs").glob("*/*")
+    assert code == 0
+    assert out.endswith(f"to see it\n  gapath-log view {folder.name}\n")

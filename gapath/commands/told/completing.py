@@ -14,7 +14,7 @@ from gapath.discovery import kinds, parsed_yaml, yaml_names
 from gapath.reference.settings import CHOSEN, ROOT, Setting, preset, presets, root, text_of
 
 OTHER = {
-    "log": "info verify salvage rerun crate repeat view",
+    "log": "info verify salvage rerun bag messages crate repeat view picture movie",
     "report": "runs compare watch tag note prune archive",
     "genotype": "",
 }
