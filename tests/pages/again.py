@@ -16,6 +16,9 @@ LEFT_OUT = {
     "make setup": "makes the environment that tests run in",
     "source .venv/bin/activate": "is of the shell",
     "cd examples": "tests run in a copy of that folder",
+    "gapath -m map=kg18_test3 planner=ga1,ga2 trials=20 recorder=none hydra/launcher=joblib "
+    "hydra.launcher.n_jobs=2 name=cores": "tests/commands/test_sweeps.py does: joblib's processes "
+    "and the forks of these tests do not go together",
     "pip install -e .": "the fixture of tests/test_plugin.py installs the package",
 }
 """Commands of pages that no test runs, and why."""
