@@ -3,7 +3,6 @@
 import hashlib
 import os
 import re
-import shutil
 import subprocess
 import sys
 
@@ -15,10 +14,6 @@ import gapath
 pytest.importorskip("mkdocs")
 
 CONFIG = ROOT / "docs" / "site" / "mkdocs.yml"
-BROWSER = next(
-    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome", "chrome"))),
-    None,
-)
 WIDE, PHONE = {"width": 1280, "height": 900}, {"width": 390, "height": 844}
 PAGES = [
     "index",
@@ -66,19 +61,6 @@ def test_the_script_that_is_kept_is_as_it_was_published():
     kept = CONFIG.parent / "vendor"
     digest = hashlib.sha256((kept / "iframe-worker.js").read_bytes()).hexdigest()
     assert digest in (kept / "README.md").read_text("utf-8")
-
-
-@pytest.fixture(scope="module")
-def browser():
-    if BROWSER is None:
-        assert not os.environ.get("CI"), "no Chromium on the path; .ci/run installs it"
-        pytest.skip("no Chromium on the path (Debian: apt-get install chromium)")
-    sync_api = pytest.importorskip("playwright.sync_api")
-    with sync_api.sync_playwright() as driver:
-        options = ["--no-sandbox"] if os.geteuid() == 0 else []
-        browser = driver.chromium.launch(executable_path=BROWSER, args=options)
-        yield browser
-        browser.close()
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ from functools import partial
 
 import pytest
 from PIL import Image
-from recorders.log_events import example, example_drives, write
+from recorders.log_events import example, example_drives
 
 from gapath.commands import log as log_cli
 from gapath.commands.viewing.told import drawn, told_trial
@@ -12,18 +12,6 @@ from gapath.driving.retold import Drive
 from gapath.events import DriveFinished, TrialFinished
 from gapath.pictures.shown import png_of
 from gapath.recorders import mcap
-
-
-@pytest.fixture
-def plans(tmp_path):
-    (tmp_path / "plans").mkdir()
-    return write(example(), tmp_path / "plans")
-
-
-@pytest.fixture
-def drives(tmp_path):
-    (tmp_path / "drives").mkdir()
-    return write(example_drives(), tmp_path / "drives")
 
 
 def call(capsys, *argv):

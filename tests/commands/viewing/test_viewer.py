@@ -9,7 +9,6 @@ import urllib.request
 from pathlib import Path
 
 import pytest
-from recorders.log_events import example, example_drives, write
 from recorders.recordings import QUIET, read
 
 from gapath.commands import log as log_cli
@@ -17,18 +16,6 @@ from gapath.commands.viewing.told import told_trial
 from gapath.errors import InputError
 from gapath.recorders import mcap
 from gapath.recorders.rerun.scenes import record_two
-
-
-@pytest.fixture
-def plans(tmp_path):
-    (tmp_path / "plans").mkdir()
-    return write(example(), tmp_path / "plans")
-
-
-@pytest.fixture
-def drives(tmp_path):
-    (tmp_path / "drives").mkdir()
-    return write(example_drives(), tmp_path / "drives")
 
 
 @pytest.fixture
@@ -89,7 +76,11 @@ def listening(ports):
 
 @pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
 def test_the_web_viewer_serves_this_machine_and_leaves_nothing(plans):
-    begin = "from gapath.__main__ import log; import sys; sys.exit(log())"
+    # of a shell's background job Control-C would be ignored
+    begin = (
+        "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler); "
+        "from gapath.__main__ import log; sys.exit(log())"
+    )
     command = [sys.executable, "-c", begin, "view", "--web", str(plans)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=QUIET) as process:
         try:
@@ -101,7 +92,10 @@ def test_the_web_viewer_serves_this_machine_and_leaves_nothing(plans):
             assert listening(ports) == ["0100007F", "0100007F"]  # 127.0.0.1
         finally:
             process.send_signal(signal.SIGINT)
-            code = process.wait(30)
+            try:
+                code = process.wait(30)
+            finally:
+                process.kill()
     assert code == 128 + signal.SIGINT
     until = time.monotonic() + 10
     while listening(ports) and time.monotonic() < until:

@@ -6,7 +6,6 @@ Debian's Chromium, or whatever of that kind is on the path; playwright is only i
 import math
 import os
 import re
-import shutil
 from itertools import pairwise
 from urllib.parse import unquote, urlsplit
 
@@ -19,32 +18,11 @@ from gapath.pipelines.report.report import make_report
 
 from ..conftest import summed
 
-BROWSER = next(
-    (
-        path
-        for name in ("chromium", "chromium-browser", "google-chrome", "chrome")
-        if (path := shutil.which(name))
-    ),
-    None,
-)
 WIDE, PHONE = {"width": 1280, "height": 900}, {"width": 390, "height": 844}
 SIZES = pytest.mark.parametrize("size", [WIDE, PHONE], ids=["1280", "390"])
 SCHEMES = pytest.mark.parametrize("scheme", ["light", "dark"])
 TABLE = "#kg18-table1 .scroll:has(#table1-caption)"
 METRICS = "#sweeps-table-metrics-plan"
-
-
-@pytest.fixture(scope="module")
-def browser():
-    if BROWSER is None:
-        assert not os.environ.get("CI"), "no Chromium on the path; .ci/run installs it"
-        pytest.skip("no Chromium on the path (Debian: apt-get install chromium)")
-    sync_api = pytest.importorskip("playwright.sync_api")
-    with sync_api.sync_playwright() as driver:
-        options = ["--no-sandbox"] if os.geteuid() == 0 else []
-        browser = driver.chromium.launch(executable_path=BROWSER, args=options)
-        yield browser
-        browser.close()
 
 
 @pytest.fixture(scope="module")
