@@ -134,7 +134,8 @@ def _trials(text: str) -> list[int]:
 
 def _log_of(path: Path, arguments: argparse.Namespace) -> Path:
     """Give the log that a file is, or that a run has which is named (`find_run`)."""
-    if (path.is_file() and path.name != MANIFEST) or not (path.exists() or _is_key(path)):
+    is_named = path.is_dir() or path.name == MANIFEST or (_is_key(path) and not path.exists())
+    if not is_named:
         return path
     folder = find_run(arguments.outputs, str(path))
     log, run = folder / FILE, read_record(folder)

@@ -141,7 +141,9 @@ def test_its_animation_shows_every_chosen_moment_as_it_was(case):
         show(step)
         path, way, robot, seen = (line.get_xydata() for line in axes.lines)
         fields = [event for event in told.events if isinstance(event, Stepped)][step].fields
-        assert Polygon(seen).contains_points(fields.tolist()).all()
+        near = np.abs(fields - robot[-1]).max(axis=1) <= 4  # others were known before
+        assert Polygon(seen).contains_points(fields[near].tolist()).all()
+        assert near.all() or step == 0
         assert way.tolist() == told.places[: step + 1].tolist()
         assert robot.tolist() == told.places[step : step + 1].tolist()
         tint = axes.images[1].get_array()[..., 3] > 0

@@ -18,6 +18,9 @@ EXTRAS = PROJECT["optional-dependencies"]
 NOT_OURS = (".git", ".venv", "outputs", "build", "dist", "*.egg-info", ".hypothesis", ".*_cache")
 """What lies in a checkout and is no part of it."""
 
+SAFELY = {"filter": "data"} if hasattr(tarfile, "data_filter") else {}
+"""How a tar file is unpacked; Python before 3.11.4 knows no filters."""
+
 
 def plain(name):
     """A package's name, of which there are several ways to write it."""
@@ -53,7 +56,7 @@ def build(kind, sources, target):
 def unpacked(file, place):
     """Unpack an sdist, which holds one folder; give that."""
     with tarfile.open(file) as archive:
-        archive.extractall(place, filter="data")
+        archive.extractall(place, **SAFELY)
     (folder,) = place.iterdir()
     return folder
 

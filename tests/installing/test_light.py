@@ -29,7 +29,7 @@ def made(light, tmp_path_factory):
 def test_a_plan_says_what_it_goes_without(made):
     folder, out = made
     (log,) = folder.glob("outputs/plan/*/run.mcap")
-    assert out.splitlines()[-1] == WITHOUT
+    assert WITHOUT in out.splitlines()
     assert not [*log.parent.glob("*.rrd")]
     assert "rerun" not in (log.parent / "config.yaml").read_text()
 

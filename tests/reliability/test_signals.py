@@ -112,7 +112,8 @@ def test_the_viewer_ends_with_the_command(tmp_path):
     viewer.chmod(0o755)
     file.touch()
     path = str(viewer)
-    process = started("gapath-log", ["view", str(file)], tmp_path / "errors", RERUN_CLI_PATH=path)
+    there = {"RERUN_CLI_PATH": path, "DISPLAY": ":0"}
+    process = started("gapath-log", ["view", str(file)], tmp_path / "errors", **there)
     wait(process, lambda: told.exists() and told.read_text())
     command = Path(f"/proc/{int(told.read_text())}/cmdline")
     assert command.read_bytes()

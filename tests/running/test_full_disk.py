@@ -9,6 +9,7 @@ import pytest
 from gapath.commands import run as cli
 
 RUN = ("map=kg18_test1", "planner=ga1", "planner.max_epochs=20", "planner.min_epochs=10", "seed=3")
+ALONE = (*RUN, "recorder=mcap", "provenance=false")  # nothing larger than its log
 
 
 def refused(result):
@@ -48,6 +49,12 @@ def test_every_file_that_does_not_fit_is_told(gapath, tmp_path, whole):
         finally:
             resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
         goes_on(gapath, tmp_path)
+    log = (whole / "run.mcap").stat().st_size * 3 // 4
+    resource.setrlimit(resource.RLIMIT_FSIZE, (log, hard))
+    try:
+        told.add(refused(gapath(*ALONE)).partition(": got ")[0].rpartition("/")[2])
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
     assert told >= {"run.part, recorder mcap", "trial-0.rrd"}
 
 

@@ -174,10 +174,10 @@ class LogWriter:
         return described(name, self._writer.statistics, self._channels)
 
 
-def check_step(step_s: float) -> None:
+def check_step(step_s: float, where: str) -> None:
     """Refuse a step of no sensible time: raises InputError."""
     good = 1 <= step_s * 1e9 <= LONGEST_STEP
-    require(good, "step_s", step_s, f"from 1e-9 to {LONGEST_STEP / 1e9:g}")
+    require(good, where, step_s, f"from 1e-9 to {LONGEST_STEP / 1e9:g}")
 
 
 @dataclass
@@ -196,11 +196,10 @@ class Recorder:
 
     _path: Path = field(init=False, repr=False)
     _file: IO[bytes] | None = field(init=False, repr=False, default=None)
-    _bag: IO[bytes] = field(init=False, repr=False)
     _writer: LogWriter = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        check_step(self.step_s)
+        check_step(self.step_s, "recorder.step_s")
 
     def check(self, trials: int) -> None:
         """Accept every run; its size is bounded while it is written."""
@@ -209,7 +208,6 @@ class Recorder:
         """Start ``run.mcap.part`` in an existing folder."""
         self._path = Path(folder) / FILE
         self._file = new_file(part_of(self._path))
-        self._bag = new_file(part_of(self._path.with_name(METADATA)))
         self._writer = LogWriter(self._file, Form(LOG_VERSION, round(self.step_s * 1e9)))
 
     def recorded(self, folder: str) -> Iterator[Event]:
@@ -241,17 +239,19 @@ class Recorder:
     def close(self) -> list[str]:
         """Finish the log, make it durable, and give it its name."""
         assert self._file is not None, "open comes first"
+        bag = self._path.with_name(METADATA)
         self._writer.finish()
-        self._bag.write(self._writer.bag(FILE))
-        for file, path in ((self._file, self._path), (self._bag, self._path.with_name(METADATA))):
-            with file:
+        with self._file as log, new_file(part_of(bag)) as described:
+            described.write(self._writer.bag(FILE))
+            for file in (log, described):
                 file.flush()
                 os.fsync(file.fileno())
+        for path in (self._path, bag):
             publish(part_of(path), path)
         return [FILE, METADATA]
 
     def abort(self) -> None:
         """Leave ``run.mcap.part`` with all that was recorded, for `salvage`."""
         if self._file is not None and not self._file.closed:
-            with self._file, self._bag:
+            with self._file:
                 self._writer.flush()

@@ -70,7 +70,7 @@ def animate(
     OSError
         If the bag cannot be written.
     """
-    check_step(step_s)
+    check_step(step_s, "step_s")
     require(not os.path.lexists(folder), folder, "something that is there", "a new folder")
     require(folder.parent.is_dir(), folder, "no such folder", "one within a folder")
     form, left, events = (
