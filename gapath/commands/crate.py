@@ -96,7 +96,7 @@ def _notes(packed: "Packed") -> Iterator[str]:
         if isinstance(value, str) and Path(value).is_absolute():
             yield f"the runs' own files say {name}: {value}, as it was typed"
     if FILE not in packed.run.known.files:
-        yield f"{packed.run.name} has no log (recorder=mcap), so nobody can repeat it"
+        yield f"{packed.run.name} has no log, so nobody can repeat it: do it with recorder=mcap"
 
 
 def _runs(given: str, outputs: Path) -> list[RunRecord]:

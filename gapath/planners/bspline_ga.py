@@ -51,8 +51,10 @@ class Planner:
         Individuals, at least 4.
     control_points : int
         k, control points of the B-spline with start and target, at least 3.
-    min_epochs, max_epochs : int
-        Stop at a feasible path, not before and not after; epoch 1 is the initial population.
+    min_epochs : int
+        Epochs done at least, even if a path is found before; epoch 1 is the initial population.
+    max_epochs : int
+        Epochs done at most; without a path until then there is none.
     way_points : int
         Points of the curve that are joined by straight lines, at least 2.
     sampling : str

@@ -129,7 +129,7 @@ def test_a_run_without_a_log_is_told(made, capfd):
     run = run_with(made, "astar")
     (run / mcap.FILE).unlink()
     resealed(run)
-    assert "has no log (recorder=mcap)" in called(capfd, "crate", run, "crate")[1]
+    assert "has no log, so nobody can repeat it" in called(capfd, "crate", run, "crate")[1]
 
 
 BAD = {
