@@ -28,14 +28,14 @@ _BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _VARIES = re.compile(
     r"\b[0-9a-f]{6,64}\b"  # keys
     r"|\d{4}-\d\d-\d\d[ T]\d\d:\d\d(:\d\d\S*)?"
-    r"|\d[\d.,]* (ns|us|ms|s|bytes|kB|MB)\b"
+    r"|\d[\d.,]* (ns|us|ms|s|bytes|kB|MB|files)\b"
 )
 _DIFF = re.compile(r"^ *outputs/\S+\.diff\n", re.MULTILINE)
 """What a run keeps of a checkout whose files were changed."""
 
 
 def same(new, shown):
-    """Tell whether an output is what a page shows, but for keys, dates, times and sizes.
+    """Tell whether an output is what a page shows, but for keys, dates, times, sizes and counts.
 
     A line of three dots in the page stands for any lines.
     """
