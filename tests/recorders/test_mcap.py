@@ -258,7 +258,7 @@ def test_a_step_takes_as_long_as_the_recorder_says(step_s, tmp_path):
     found = mcap.compare(path, lambda _: iter(example()), mcap.USUAL)
     assert (found.difference, found.byte) == ("", None)
     with path.open("rb") as file:
-        summary = make_reader(file).get_summary()
+        summary = make_reader(file, validate_crcs=True).get_summary()
     assert summary.statistics.message_end_time == example()[-1].step * form.step_ns
 
 
