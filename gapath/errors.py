@@ -49,6 +49,15 @@ def _written(found: re.Match[str]) -> str:
     return f"\\x{code:02x}" if code < 256 else f"\\u{code:04x}"
 
 
+def few(items: Sequence[object]) -> str:
+    """List things of which there may be many: the first nine, and how many more there are."""
+    rest = len(items) - _FEW
+    return ", ".join(map(str, items[:_FEW])) + (f" and {rest} more" if rest > 0 else "")
+
+
+_FEW = 9
+
+
 class InputError(ValueError):
     """A file, a field or a value that a user gave cannot be used.
 

@@ -17,7 +17,7 @@ from gapath.history.graph import Graph
 from gapath.kernels import units
 from gapath.pictures.shown import FRAMES, Shown, axes_for
 from gapath.scenario.listed import Queries
-from gapath.scenario.nearest import nearest_free, other_reading
+from gapath.scenario.nearest import nearest_told, other_reading
 
 if TYPE_CHECKING:
     from gapath.pictures.animation import Animation
@@ -116,8 +116,7 @@ class Problem:
                 limits = f"0 <= x < {self.map.cols}, 0 <= y < {self.map.rows}"
                 raise InputError(f"map.{name}", list(place), f"a field [x, y] with {limits}")
             if self.map.obstacles[place[1], place[0]]:
-                nearest = nearest_free(self.map.obstacles, place)
-                hint = f"; the nearest is {list(nearest)}" if nearest else ", but there is none"
+                hint = nearest_told(self.map, place)
                 ends = [e for e in (self.start, self.target) if self.map.contains(e)]
                 hint += other_reading(self.map, self.map.weights == 0, ends)
                 raise InputError(

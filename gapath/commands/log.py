@@ -4,7 +4,7 @@ import argparse
 import os
 import re
 import sys
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -12,7 +12,8 @@ from typing import Any
 import gapath
 from gapath.commands import crate
 from gapath.commands.viewing import drawing, viewer
-from gapath.errors import InputError, printable, require, require_extra
+from gapath.commands.viewing.told import path_rows
+from gapath.errors import InputError, few, printable, require, require_extra
 from gapath.events import Event, Finished, RunFinished, RunStarted
 from gapath.recorders import mcap
 from gapath.recorders.mcap import FILE
@@ -110,6 +111,8 @@ def _parser() -> argparse.ArgumentParser:
         "open a log's first trial, those of two logs, or a recording (.rrd), in the Rerun viewer"
     )
     viewer.add_web(command("view", _view, opened, many=True))
+    path = command("path", _path, "print the path of a trial: a field a line, x,y in metres")
+    drawing.add_trial(path)
     picture = command("picture", _picture, "draw a trial, or one step of it, from a log: a PNG")
     drawing.add_options(picture, "the PNG to write (default: beside FILE)")
     step = "a drive's step, a plan's epoch (default: how it ended)"
@@ -159,7 +162,9 @@ def _info(arguments: argparse.Namespace) -> int:
     if fault is not None:
         state = f"cut off or damaged ({fault}); save the rest: gapath-log salvage {path}"
     task, problem, grid = find_task(run.task), run.problem, run.problem.map
-    ends = ", ".join(f"{count} {end}" for end, count in finished.items())
+    ends = ", ".join(f"{len(trials)} {end}" for end, trials in finished.items())
+    done = sum(map(len, finished.values()))
+    rare = sorted(finished, key=lambda end: len(finished[end]))[:-1]
     rows = {
         "file": f"{path}, {path.stat().st_size} bytes",
         "state": state,
@@ -171,7 +176,8 @@ def _info(arguments: argparse.Namespace) -> int:
         "problem": f"{problem.told}, corner cutting: {problem.corner_cutting.name.lower()}",
         **task.told_optimum(run),
         "seed": str(run.seed),
-        "trials": f"{finished.total()} of {run.trials}" + (f": {ends}" if ends else ""),
+        "trials": f"{done} of {run.trials}" + (f": {ends}" if ends else ""),
+        **{end: f"trial {few(finished[end])}" for end in rare},
         "versions": ", ".join(f"{name} {version}" for name, version in run.versions.items()),
     }
     for name, value in rows.items():
@@ -185,17 +191,19 @@ def _info(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _summary(events: Iterator[Event]) -> tuple[RunStarted, bool, Counter[str], InputError | None]:
-    """Give the first event, whether the run came to its end, how its trials ended, what is wrong.
+def _summary(
+    events: Iterator[Event],
+) -> tuple[RunStarted, bool, dict[str, list[int]], InputError | None]:
+    """Give the first event, whether the run came to its end, trials by their end, what is wrong.
 
     Raises InputError if nothing is whole.
     """
-    run, last, finished = next(events), None, Counter[str]()
+    run, last, finished = next(events), None, defaultdict[str, list[int]](list)
     assert isinstance(run, RunStarted), "the reader gives it first"
     try:
         for last in events:
             if isinstance(last, Finished):
-                finished[last.ending] += 1
+                finished[last.ending].append(last.trial)
     except InputError as error:
         return run, False, finished, error
     return run, isinstance(last, RunFinished), finished, None
@@ -219,16 +227,8 @@ def _lacking(lost: mcap.Lost) -> str:
         return ""
     parts = {"messages": [f"{first}-{last}" for first, last in lost.messages]}
     parts["not whole, so left out: trials"] = [str(trial) for trial in sorted(lost.trials)]
-    told = [
-        f"{name} {', '.join(all_of[:_FEW])}"
-        + (f" and {len(all_of) - _FEW} more" if len(all_of) > _FEW else "")
-        for name, all_of in parts.items()
-        if all_of
-    ]
+    told = [f"{name} {few(all_of)}" for name, all_of in parts.items() if all_of]
     return f"; lost: {'; '.join(told)}"
-
-
-_FEW = 9
 
 
 def _verify(arguments: argparse.Namespace) -> int:
@@ -323,6 +323,12 @@ def _view(arguments: argparse.Namespace) -> int:
 def _picture(arguments: argparse.Namespace) -> int:
     path = _log_of(arguments.file, arguments)
     print(printable(drawing.picture(path, _limits(arguments), arguments)))
+    return 0
+
+
+def _path(arguments: argparse.Namespace) -> int:
+    path = _log_of(arguments.file, arguments)
+    sys.stdout.writelines(path_rows(path, arguments.trial, _limits(arguments)))
     return 0
 
 

@@ -35,7 +35,7 @@ from gapath.errors import FAULTS, InputError, printable, require
 from gapath.running.config import HOW, Run, conf_folder, make_run
 from gapath.running.experiment import Execution, execute
 from gapath.running.sweep import BUSY
-from gapath.running.work import told, work
+from gapath.running.work import likely, told
 from gapath.store.status import RunState
 
 BAD_INPUT, FAILED = 2, 1
@@ -153,8 +153,8 @@ def typed(hydra: DictConfig) -> list[str]:
 
 
 def work_of(run: Run) -> int:
-    """Bound what each trial of a run does."""
-    return work(run.task, run.settings, run.problem.map.weights.size)
+    """Say what each trial of a run may come to."""
+    return likely(run.task, run.settings, run.problem.map.weights.size)
 
 
 def warn(line: str | None) -> None:

@@ -97,11 +97,12 @@ class Drive(Shown):
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Draw the map and the way gone, tinted what it never saw (`Shown.plot`)."""
-        from gapath.pictures.board import draw_path, draw_unknown
+        from gapath.pictures.board import draw_path, draw_unknown, drive_legend
 
         ax, known = self.problem.plot(ax), self.known()
         draw_unknown(ax, np.isnan(known))
         draw_path(ax, self.path, no_path())
+        drive_legend(ax)
         told = f"{self.problem.map.name}: {self._end.ending} after {self.steps} steps"
         ax.set_title(told, parse_math=False)
         return ax

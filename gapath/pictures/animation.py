@@ -23,8 +23,8 @@ KINDS = (".webp", ".gif", ".mp4", ".html")
 """Files that an animation can be saved as."""
 
 _WIDTH, _HEIGHT, _DPI = 6.0, 7.0, 90
-_ROOM = 0.75
-"""Inches of a picture beside and above the map."""
+_ROOM, _LEGEND = 0.75, 0.5
+"""Inches of a picture beside and above the map, and below it."""
 
 
 def chosen(moments: Sequence[int], most: int = FRAMES) -> list[int]:
@@ -60,8 +60,8 @@ class Animation:
     def frames(self) -> list[Image.Image]:
         """The pictures, drawn when they are first asked for."""
         rows, cols = self.shape
-        scale = min((_WIDTH - _ROOM) / cols, (_HEIGHT - _ROOM) / rows)
-        size = (max(cols * scale, 2.5) + _ROOM, max(rows * scale, 0.5) + _ROOM)
+        scale = min((_WIDTH - _ROOM) / cols, (_HEIGHT - _ROOM - _LEGEND) / rows)
+        size = (max(cols * scale, 2.5) + _ROOM, max(rows * scale, 0.5) + _ROOM + _LEGEND)
         figure = Figure(size, dpi=_DPI, layout="constrained")
         canvas: Any = FigureCanvasAgg(figure)
         show = self.scene(figure.subplots())

@@ -1,5 +1,7 @@
 """A map as a picture: what a field costs as grey, obstacles in a colour of their own."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -149,6 +151,24 @@ def draw_path(axes: Axes, path: NDArray[np.int32], way_points: NDArray[np.int32]
     return line
 
 
+def drive_legend(axes: Axes, lines: Sequence[Line2D] = ()) -> None:
+    """Say below a drive's picture what its colours mean.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Where it is drawn.
+    lines : sequence of matplotlib.lines.Line2D
+        Lines with a label, beside the way that the robot went and what it has not seen.
+    """
+    way = Line2D([], [], color=PATH, linewidth=1.8, label="way of the robot")
+    unseen = Patch(facecolor=UNKNOWN, label="not seen by it")
+    axes.legend(
+        handles=[way, unseen, *lines], loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=2,
+        fontsize=8, frameon=False,
+    )  # fmt: skip
+
+
 class Robot:
     """A robot on a map of which it knows a part, as an animation shows it.
 
@@ -163,10 +183,12 @@ class Robot:
     def __init__(self, axes: Axes, shape: tuple[int, int]) -> None:
         (self._map,) = axes.images
         self._unknown = draw_unknown(axes, np.zeros(shape, dtype=np.bool_))
-        (self._path,) = axes.plot([], [], color=POINT, linestyle=":", linewidth=1.5)
+        follows, sensor = "path that it follows", "what its sensor covers"
+        (self._path,) = axes.plot([], [], color=POINT, linestyle=":", linewidth=1.5, label=follows)
         (self._way,) = axes.plot([], [], color=PATH, linewidth=1.8)
         (self._place,) = axes.plot([], [], "o", color=PATH, markersize=7)
-        (self._sensor,) = axes.plot([], [], color=GROWN, linewidth=1.2)
+        (self._sensor,) = axes.plot([], [], color=GROWN, linewidth=1.2, label=sensor)
+        drive_legend(axes, [self._path, self._sensor])
 
     def show(
         self,

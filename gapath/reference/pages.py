@@ -21,10 +21,16 @@ def settings_page() -> str:
         lines += ["", f"## {group.capitalize()}s", ""]
         named = presets(group)
         lines += ["| name | kind | what it is |", "| --- | --- | --- |"]
-        lines += [f"| `{group}={p.name}` | `{p.kind}` | {_cell(p.about)} |" for p in named]
+        lines += [f"| `{group}={p.name}` | {_kind(group, p)} | {_cell(p.about)} |" for p in named]
         for kind in dict.fromkeys(each.kind for each in named):
             lines += _of_kind(group, kind, [each for each in named if each.kind == kind])
     return "\n".join(lines) + "\n"
+
+
+def _kind(group: str, preset: Preset) -> str:
+    """Name the kind of a YAML; it leads to the table of its settings, if it has any."""
+    name = f"`{preset.kind}`"
+    return f"[{name}](#{group}-{preset.kind})" if preset.settings else name
 
 
 def _of_kind(group: str, kind: str, named: list[Preset]) -> list[str]:

@@ -17,7 +17,7 @@ from gapath.grid import GridMap
 from gapath.planning.acceleration import with_kernels
 from gapath.problem import CornerCutting, Problem
 from gapath.running.naming import Method, check_name, map_name, method_of
-from gapath.running.posing import first_of
+from gapath.running.posing import first_of, in_fields
 from gapath.running.shards import span, without_whole
 from gapath.store.inputs import Inputs, watched
 from gapath.store.settings import flatten
@@ -262,7 +262,7 @@ def split(loose: Mapping[str, Any]) -> tuple[Root, dict[str, Any]]:
         if name not in known:
             raise InputError(name, "an unknown name", one_of(name, known))
     root: Root = typed(Root, {k: v for k, v in loose.items() if k not in {*groups, SEARCH}}, "")
-    root.map = normalised("map", root.map, "map")
+    root.map = normalised("map", dict(in_fields(root.map)), "map")
     root.recorder = {
         name: normalised("recorder", values, f"recorder.{name}")
         for name, values in root.recorder.items()

@@ -1,10 +1,13 @@
-"""Which of several problems stands for all of a run."""
+"""Which problem a run poses: its ends in metres, or the one of several that stands for all."""
 
+import re
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
-from gapath.errors import InputError
+from gapath.components import build
+from gapath.errors import InputError, require
 from gapath.grid import GridMap
 from gapath.problem import CornerCutting, Problem
 from gapath.scenario.listed import Queries
@@ -30,3 +33,60 @@ def first_of(
     first = int(np.argmax(joined if joined.any() else free))
     (x, y, u, v), length = ends[first].tolist(), float(queries.lengths[first])
     return Problem(grid, (x, y), (u, v), rule, maps, length, queries)
+
+
+def in_fields(settings: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Give a map's settings with start and target in fields, where they stand in metres.
+
+    Parameters
+    ----------
+    settings : mapping
+        Of a map, loose. A point in metres has the unit behind both numbers, ``[1.05m, 3.95m]``, in
+        the frame of `GridMap.to_metres`.
+
+    Returns
+    -------
+    mapping
+        The same, but for such points: a run is the same, however its ends were told.
+
+    Raises
+    ------
+    InputError
+        If a point lies beyond the map, a number of it has no unit, or the map cannot be read.
+    """
+    points = {
+        name: settings[name]
+        for name in ("start", "target")
+        if any(isinstance(n, float | str) and not _is_whole(n) for n in _listed(settings.get(name)))
+    }
+    for name, point in points.items():
+        good = len(point) == 2 and all(isinstance(n, str) and _METRES.fullmatch(n) for n in point)
+        right = "a field, two integers [x,y], or a point in metres, [1.05m,3.95m]"
+        require(good, f"map.{name}", f"[{','.join(map(str, point))}]", right)
+    if not points:
+        return settings
+    grid: GridMap = build("map", {**settings, **dict.fromkeys(points)}, "map").read()
+    low, high = grid.to_metres(np.array([(0, grid.rows - 1), (grid.cols - 1, 0)])).round(3).tolist()
+    fields = {}
+    for name, point in points.items():
+        place = grid.to_fields([[float(n.removesuffix("m")) for n in point]])[0].tolist()
+        right = (
+            f"a point of the map, whose lower left field is at {low} m, its upper right at {high} m"
+        )
+        require(grid.contains(place), f"map.{name}", f"[{','.join(point)}]", right)
+        fields[name] = place
+    return {**settings, **fields}
+
+
+_METRES = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d\d?)?m")
+
+
+def _listed(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else []
+
+
+def _is_whole(number: float | str) -> bool:
+    try:
+        return float(number).is_integer()
+    except ValueError:
+        return False

@@ -31,6 +31,31 @@ def other_reading(grid: PlanningMap, obstacles: NDArray[np.bool_], places: list[
     return f"; or, if {then} is an obstacle here, not {now}, map=image and {setting}"
 
 
+def nearest_told(grid: GridMap, place: Field) -> str:
+    """Say which free field is nearest, on a map with a metric frame (ROS) in metres, too.
+
+    Parameters
+    ----------
+    grid : GridMap
+        The map.
+    place : (x, y)
+        A field of it.
+
+    Returns
+    -------
+    str
+        The end of a sentence.
+    """
+    nearest = nearest_free(grid.obstacles, place)
+    if nearest is None:
+        return ", but there is none"
+    told = f"; the nearest is {list(nearest)}"
+    if grid.source != "rosmap":
+        return told
+    x, y = grid.to_metres(np.array([nearest]))[0].round(3).tolist()
+    return f"{told}, in metres [{x}m,{y}m]"
+
+
 def nearest_free(obstacles: NDArray[np.bool_], place: Field) -> Field | None:
     """Find the free field nearest to a place.
 

@@ -15,7 +15,7 @@ from gapath.driving.navigation import Navigator
 from gapath.driving.row import DriveRow, drive_row
 from gapath.driving.told import drive_events
 from gapath.driving.world import Changes
-from gapath.errors import Checks, require
+from gapath.errors import Checks, few, require
 from gapath.events import (
     NEVER_LEFT,
     Called,
@@ -269,7 +269,9 @@ class Task:
         lines: dict[str, object] = {"drives": len(outcomes)}
         for name, count in _by_outcome(rows).items():
             share = f"{count} ({100 * count / len(outcomes):.1f} %)"
-            lines[name] = f"{share}{self._remark(rows, name)}"
+            rare = 0 < count < len(outcomes) and name != Outcome.REACHED.name.lower()
+            which = f": trial {few(rows['trial'][outcomes == name])}" if rare else ""
+            lines[name] = f"{share}{self._remark(rows, name)}{which}"
         ratios = rows["steps_ratio"]
         if len(ratios := ratios[~np.isnan(ratios)]):
             lines["median ratio"] = f"{np.median(ratios):.3g} of the shortest possible"

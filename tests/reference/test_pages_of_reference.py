@@ -25,7 +25,10 @@ def test_every_setting_and_every_name_is_on_the_page():
         assert f"| `{setting.name}` |" in page
     for group in CHOSEN:
         for each in presets(group):
-            assert f"| `{group}={each.name}` | `{each.kind}` |" in page
+            place = f"{group}-{each.kind}"
+            kind = f"[`{each.kind}`](#{place})" if each.settings else f"`{each.kind}`"
+            assert f"| `{group}={each.name}` | {kind} |" in page
+            assert (f"### {place.replace('-', ' ')}" in page) == bool(each.settings)
             assert all(f"| `{setting.name}` |" in page for setting in each.settings)
 
 

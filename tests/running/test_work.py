@@ -8,7 +8,7 @@ from gapath.errors import InputError
 from gapath.recorders import mcap
 from gapath.running import verify
 from gapath.running.again import made_again
-from gapath.running.work import MUCH, told, work
+from gapath.running.work import MUCH, likely, told, work
 
 
 def bound_of(log):
@@ -52,6 +52,18 @@ def test_hours_are_told_before_they_begin():
     assert "1000000 trials of up to 3e+07 individuals and fields each: up to 2.1e+03 hours" in str(
         told([(10**6, 3 * 10**7)])
     )
+
+
+def test_nobody_is_told_of_hours_before_a_hundred_drives_of_seconds(tmp_path):
+    """Of a drive a hundredth of the bound is told, which is more than it does."""
+    log = log_of("drive", tmp_path)
+    each, trials, did = bound_of(log)
+    run = next(mcap.read_events(log))
+    told_of = likely(made_again(run).task, run.settings, run.problem.map.weights.size)
+    assert told_of == each // 100
+    assert did <= trials * told_of
+    run = run_of("task=drive", "map=kg18_map4", "navigator=kg18")
+    assert told([(100, likely(run.task, run.settings, run.problem.map.weights.size))]) is None
 
 
 def test_of_a_log_what_it_has_is_counted(tmp_path, monkeypatch):

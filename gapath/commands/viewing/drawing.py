@@ -23,9 +23,14 @@ _MOST = 240
 _KINDS = (".webp", ".gif", ".mp4")
 
 
+def add_trial(parser: argparse.ArgumentParser) -> None:
+    """Add the option that says which trial."""
+    parser.add_argument("--trial", type=int, default=0, metavar="N", help="which (default: 0)")
+
+
 def add_options(parser: argparse.ArgumentParser, what: str) -> None:
     """Add the options that the two commands share."""
-    parser.add_argument("--trial", type=int, default=0, metavar="N", help="which (default: 0)")
+    add_trial(parser)
     parser.add_argument("-o", "--output", type=Path, metavar="OUT", help=what)
 
 

@@ -1,5 +1,6 @@
-"""One trial of a log, as it is drawn."""
+"""One trial of a log, as it is drawn, or printed."""
 
+from collections.abc import Iterator
 from dataclasses import fields, replace
 from pathlib import Path
 
@@ -88,3 +89,35 @@ def drawn(run: RunStarted, events: list[Event]) -> Plan | Drive:
     lines = no_path() if history is None else history.way_points[-1]
     answer = {each.name: getattr(end.answer, each.name) for each in fields(Answer)}
     return Plan(**answer, trace=lambda: history, lines=lambda: lines, problem=problem)
+
+
+def path_rows(path: Path, trial: int, limits: mcap.Limits) -> Iterator[str]:
+    """Give the path of a trial as a table.
+
+    Parameters
+    ----------
+    path : Path
+        The log.
+    trial : int
+        Number of the trial.
+    limits : Limits
+        What the log may take.
+
+    Yields
+    ------
+    str
+        Lines of CSV: ``x,y``, then the centre of each field in metres in the map's frame (of a map
+        without a scale a field is one), to the micrometre.
+
+    Raises
+    ------
+    InputError
+        As `told_trial` and `drawn`, and if there is no path.
+    """
+    told = drawn(*told_trial(path, trial, limits))
+    found = "no path" if isinstance(told, Drive) else f"no path: {told.status.sentence}"
+    require(len(told.path) > 0, f"trial {trial}", found, "a trial that found one")
+    yield "x,y\n"
+    assert told.problem is not None, "a log has it"
+    for x, y in told.problem.map.to_metres(told.path).round(6).tolist():
+        yield f"{x},{y}\n"

@@ -2,7 +2,9 @@
 
 from functools import partial
 
+import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from PIL import Image
 from recorders.log_events import example, example_drives
 
@@ -78,6 +80,45 @@ def test_a_plan_without_epochs_has_a_picture_but_no_movie(tmp_path, capfd, gapat
     code, out, err = call(capfd, "movie", log)
     assert (code, out) == (2, "")
     assert "got no history, expected the plan of a genetic algorithm" in err
+
+
+def test_a_path_is_printed_in_metres(plans, drives, capsys):
+    """Of maps with 0.05 and 1 m a field, the first with an origin: as the log's own paths are."""
+    for log in (plans, drives):
+        told = drawn(*told_trial(log, 1, mcap.USUAL))
+        code, out, err = call(capsys, "path", log, "--trial", "1")
+        first, *rows = out.splitlines()
+        assert (code, first, err) == (0, "x,y", "")
+        metres = [list(map(float, row.split(","))) for row in rows]
+        expected = told.problem.map.to_metres(told.path)
+        assert np.abs(np.array(metres) - expected).max() <= 1e-6 / 2 + 1e-12
+
+
+def test_a_trial_without_a_path_says_so(tmp_path, capfd, gapath):
+    words = ["map=kg18_test3", "planner=ga1", "planner.max_epochs=1", "recorder=mcap", "seed=0"]
+    assert gapath(*words, "planner.min_epochs=1")[0] == 0
+    (log,) = tmp_path.glob("out/plan/*/run.mcap")
+    code, out, err = call(capfd, "path", log)
+    assert (code, out) == (2, "")
+    assert err == (
+        "gapath-log: trial 0: got no path: the planner stopped without a feasible path, "
+        "expected a trial that found one\n"
+    )
+
+
+def test_a_drive_says_what_its_colours_mean(drives):
+    figure = Figure()
+    axes = figure.subplots()
+    told = drawn(*told_trial(drives, 1, mcap.USUAL))
+    told.plot(axes)
+    assert labels(axes) == ["way of the robot", "not seen by it"]
+    axes = figure.subplots()
+    told.animate().scene(axes)(1)
+    assert labels(axes)[2:] == ["path that it follows", "what its sensor covers"]
+
+
+def labels(axes):
+    return [text.get_text() for text in axes.get_legend().get_texts()]
 
 
 BAD = {
