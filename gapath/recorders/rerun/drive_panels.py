@@ -77,10 +77,10 @@ def arranged(grid: GridMap, timeline: str, timed: bool) -> rrb.Blueprint:
         map_view(grid, {"map/trail": so_far}),
         rrb.StateTimelineView(origin="mode", name="Mode"),
         rrb.Horizontal(*curves),
-        row_shares=[6, 1, 2],
+        row_shares=[10, 3, 4],  # the bar of modes lies under a name and a ruler
     )
     panels = [
         rrb.TextDocumentView(origin="text", name="Settings and outcome"),
-        texts_view("calls", "Calls of planners: step, part, answer, cost", timeline),
+        texts_view("calls", "Calls: step, part, answer", timeline),
     ]
     return blueprint(view, panels, timeline)
