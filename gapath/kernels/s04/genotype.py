@@ -253,14 +253,15 @@ def measure(
 def _place(chromosomes: Chromosomes, i: int, walk: Walk) -> None:
     """Place vertex i of every path, which is not the last."""
     first, second = chromosomes.switch[0], chromosomes.switch[1]
-    location = chromosomes.location[i]
+    location, mode = chromosomes.location[i], walk.mode
     u, v = walk.there[0], walk.there[1]
+    # two loops: of arrays that may overlap, for all the compiler knows, it takes no more at once
     for p in range(location.shape[0]):
         # a switch at gene s takes effect after vertex s
-        mode = walk.mode[p] ^ (np.int32(first[p] == i - 1) | np.int32(second[p] == i - 1))
-        walk.mode[p] = mode
-        u[p] = i if mode else location[p]
-        v[p] = location[p] if mode else i
+        mode[p] ^= np.int32(first[p] == i - 1) | np.int32(second[p] == i - 1)
+    for p in range(location.shape[0]):
+        u[p] = i if mode[p] else location[p]
+        v[p] = location[p] if mode[p] else i
 
 
 @kernel(inner=True)

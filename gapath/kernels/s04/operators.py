@@ -221,23 +221,18 @@ def mutate(
     """
     n, size = chromosomes.location.shape
     one = np.uint64(1)
-    for i in range(n):
-        location, drawn = chromosomes.location[i], words[i]
+    for i in range(n + genotype.switches):
+        drawn = words[i]
         for p in range(first, size):
+            # nearly none happens, so a branch costs less than to draw for all and choose
+            if not happens(drawn[p], threshold):
+                continue
             new = np.int32(low(drawn[p], n))
-            location[p] = new if happens(drawn[p], threshold) else location[p]
-        if i < n - 1:
-            direction = chromosomes.direction[i]
-            for p in range(first, size):
-                new = np.int32(drawn[p] & one)
-                direction[p] = new if happens(drawn[p], threshold) else direction[p]
-        if genotype.column_wise:
-            flag = chromosomes.flag
-            for p in range(first, size):
-                new = np.int32((drawn[p] >> one) & one)
-                flag[p] = new if happens(drawn[p], threshold) else flag[p]
-    for s in range(genotype.switches):
-        switch, drawn = chromosomes.switch[s], words[n + s]
-        for p in range(first, size):
-            new = np.int32(low(drawn[p], n))
-            switch[p] = new if happens(drawn[p], threshold) else switch[p]
+            if i >= n:
+                chromosomes.switch[i - n, p] = new
+                continue
+            chromosomes.location[i, p] = new
+            if i < n - 1:
+                chromosomes.direction[i, p] = np.int32(drawn[p] & one)
+            if genotype.column_wise:
+                chromosomes.flag[p] = np.int32((drawn[p] >> one) & one)
