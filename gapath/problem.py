@@ -248,12 +248,13 @@ class Plan(Answer, Shown):
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Draw the map, the path and its way points; without a path the map (`Shown.plot`)."""
-        from gapath.pictures.board import draw_path
+        from gapath.pictures.board import draw_path, legend_below
 
         problem = self._asked()
         ax = problem.plot(ax)
         if self.feasible:
             draw_path(ax, self.path, self.lines())
+            legend_below(ax, ax.get_lines())
             ax.set_title(f"{problem.map.name}: a path of cost {self.cost:g}", parse_math=False)
         else:
             ax.set_title(f"{problem.map.name}: {self.status.sentence}", parse_math=False)

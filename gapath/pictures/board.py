@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.pictures.canvas import (
+    Artist,
     Axes,
     AxesImage,
     Line2D,
@@ -151,6 +152,22 @@ def draw_path(axes: Axes, path: NDArray[np.int32], way_points: NDArray[np.int32]
     return line
 
 
+def legend_below(axes: Axes, handles: Sequence[Artist]) -> None:
+    """Say below a picture what its colours mean, in two columns.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Where it is drawn.
+    handles : sequence of matplotlib.artist.Artist
+        What is there, with a label each.
+    """
+    axes.legend(
+        handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=2, fontsize=8,
+        frameon=False,
+    )  # fmt: skip
+
+
 def drive_legend(axes: Axes, lines: Sequence[Line2D] = ()) -> None:
     """Say below a drive's picture what its colours mean.
 
@@ -159,14 +176,11 @@ def drive_legend(axes: Axes, lines: Sequence[Line2D] = ()) -> None:
     axes : matplotlib.axes.Axes
         Where it is drawn.
     lines : sequence of matplotlib.lines.Line2D
-        Lines with a label, beside the way that the robot went and what it has not seen.
+        Lines with a label, beside the way of the robot.
     """
-    way = Line2D([], [], color=PATH, linewidth=1.8, label="way of the robot")
-    unseen = Patch(facecolor=UNKNOWN, label="not seen by it")
-    axes.legend(
-        handles=[way, unseen, *lines], loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=2,
-        fontsize=8, frameon=False,
-    )  # fmt: skip
+    way = Line2D([], [], color=PATH, linewidth=1.8, marker="o", label="the robot and its way")
+    unseen = Patch(facecolor=UNKNOWN, label="tinted: not seen by it")
+    legend_below(axes, [way, *lines, Patch(facecolor=_OBSTACLE, label="obstacle"), unseen])
 
 
 class Robot:

@@ -3,6 +3,7 @@
 from gapath.errors import Missing
 
 try:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.collections import LineCollection
@@ -15,6 +16,7 @@ except ModuleNotFoundError as error:
     raise Missing("a picture", "report", ["matplotlib"]) from error
 
 __all__ = [
+    "Artist",
     "Axes",
     "AxesImage",
     "Figure",

@@ -32,16 +32,19 @@ def flaw(problem: Problem, path: NDArray[np.int32], cost: float | None = None) -
     str or None
         None if the path is a solution.
     """
+    if not isinstance(path, np.ndarray) or path.dtype != np.int32:
+        found = path.dtype if isinstance(path, np.ndarray) else type(path).__name__
+        return f"{found} instead of an array of int32"
     if path.ndim != 2 or path.shape[1] != 2 or not len(path):
         return f"shape {path.shape} instead of (n, 2)"
     ends = (problem.start, problem.target)
     total, at = path_sum(problem.map.table, path, *ends, int(problem.corner_cutting))
     if total == ENDS:
-        return f"it joins {_field(path, 0)} and {_field(path, -1)}"
+        return f"it joins {_field(path, 0)} and {_field(path, -1)}, not {ends[0]} and {ends[1]}"
     if total < 0:
         return _WORDS[total].format(_field(path, at))
     if cost is not None and cost != total / SCALE:
-        return f"it costs {total / SCALE}, not {cost}"
+        return f"it costs {total / SCALE}, not {cost}, as its planner says"
     return None
 
 

@@ -71,7 +71,8 @@ def _check(problem: Problem, planner: Planner, plan: Plan, seed: int, trial: int
     if not isinstance(plan, Plan):  # its module is not where it shows
         raise InputError(f"{type(planner).__module__}, plan", plan, "a gapath.problem.Plan")
     if plan.feasible and (wrong := flaw(problem, plan.path, plan.cost)):
-        raise RuntimeError(f"the planner's path for seed {seed}, trial {trial}: {wrong}")
+        name = type(planner).__module__
+        raise RuntimeError(f"the path of {name} for seed {seed}, trial {trial}: {wrong}")
 
 
 def plan_timed(

@@ -1,5 +1,8 @@
 """What the columns of ``trials.parquet`` mean: name -> unit and meaning."""
 
+from gapath.discovery import kinds, load
+from gapath.task import columns, find_task, metrics
+
 COLUMNS = {
     "experiment": ("", "name of the experiment"),
     "map": ("", "name of the map"),
@@ -53,3 +56,17 @@ COLUMNS = {
     "compute_time_s": ("s", "wall time of looking and deciding"),
 }  # fmt: skip
 """Of gapath's own tasks; the columns of metrics are told by their modules."""
+
+
+def all_columns() -> list[str]:
+    """Give the names of all columns of all tasks."""
+    return list(dict.fromkeys(n for task in kinds("task") for n in columns(find_task(task).row)))
+
+
+def column(name: str) -> tuple[str, str]:
+    """Give unit and meaning of a column; both are empty for one of another package's task."""
+    if name not in metrics():
+        return COLUMNS.get(name, ("", ""))
+    module = load("metric", name)
+    unit = module.TITLE.partition(", ")[2] or "number"
+    return unit, " ".join((module.__doc__ or "").partition("\n\n")[0].split())

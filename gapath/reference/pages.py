@@ -1,10 +1,10 @@
 """The pages that are made from the sources: docs/settings.md and docs/columns.md."""
 
-from gapath.discovery import kinds, load
+from gapath.discovery import kinds
 from gapath.recorders.mcap.format import TOPICS, schema
-from gapath.reference.columns import COLUMNS
+from gapath.reference.columns import column
 from gapath.reference.settings import CHOSEN, Preset, Setting, presets, root, shown
-from gapath.task import columns, find_task, metrics
+from gapath.task import columns, find_task
 
 _MADE = "<!-- Made by `make reference`: do not edit. -->"
 
@@ -98,15 +98,6 @@ def columns_page() -> str:
     for topic in TOPICS:
         lines += _of_topic(topic)
     return "\n".join(lines) + "\n"
-
-
-def column(name: str) -> tuple[str, str]:
-    """Give unit and meaning of a column; both are empty for one of another package's task."""
-    if name not in metrics():
-        return COLUMNS.get(name, ("", ""))
-    module = load("metric", name)
-    unit = module.TITLE.partition(", ")[2] or "number"
-    return unit, " ".join((module.__doc__ or "").partition("\n\n")[0].split())
 
 
 def _of_topic(topic: str) -> list[str]:

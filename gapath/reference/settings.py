@@ -26,6 +26,9 @@ from gapath.reference.source import Field, SettingsClass, module, ranges_in
 CHOSEN = ("map", "planner", "navigator", "recorder")
 """Groups of which a YAML is chosen."""
 
+OF_HYDRA = ("experiment", "choice")
+"""Groups whose YAMLs set what others hold."""
+
 ROOT = "config"
 """The name of the YAML, and of the preset, that all runs begin with."""
 

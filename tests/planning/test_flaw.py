@@ -36,6 +36,12 @@ def test_wrong_paths_are_recognised(path, message):
     assert message in flaw(problem, np.array(path, dtype=np.int32).reshape(-1, 2))
 
 
+@pytest.mark.parametrize("path", [PATH.tolist(), PATH.astype(np.int64), PATH / 1.0, None])
+def test_what_is_no_array_of_fields_is_told(path):
+    found = getattr(path, "dtype", type(path).__name__)
+    assert flaw(Problem(GRID, (0, 0), (4, 3)), path) == f"{found} instead of an array of int32"
+
+
 def test_a_right_path_has_no_flaw():
     assert flaw(Problem(GRID, (0, 0), (4, 3)), PATH) is None
     assert flaw(Problem(GRID, (0, 0), (4, 3), CornerCutting.ONE_SIDE), PATH) is None

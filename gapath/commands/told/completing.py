@@ -9,12 +9,20 @@ import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from gapath.commands.told.topics import OF_HYDRA
 from gapath.discovery import kinds, parsed_yaml, yaml_names
-from gapath.reference.settings import CHOSEN, ROOT, Setting, preset, presets, root, text_of
+from gapath.reference.settings import (
+    CHOSEN,
+    OF_HYDRA,
+    ROOT,
+    Setting,
+    preset,
+    presets,
+    root,
+    text_of,
+)
 
 OTHER = {
-    "log": "info verify salvage rerun bag messages crate repeat view picture movie",
+    "log": "info verify salvage rerun bag messages crate repeat view path picture movie",
     "report": "runs compare watch tag note prune archive",
     "genotype": "",
 }

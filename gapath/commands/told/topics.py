@@ -10,6 +10,7 @@ from gapath.discovery import yaml_names
 from gapath.errors import InputError
 from gapath.reference.settings import (
     CHOSEN,
+    OF_HYDRA,
     Preset,
     Setting,
     about,
@@ -19,9 +20,6 @@ from gapath.reference.settings import (
     root,
     shown,
 )
-
-OF_HYDRA = ("experiment", "choice")
-"""Groups whose YAMLs set what others hold."""
 
 
 def width() -> int:
@@ -65,7 +63,8 @@ def topic(word: str) -> str:
     Parameters
     ----------
     word : str
-        A setting, "planner.population" or "trials"; a name, "ga3" or "planner=ga3"; a group.
+        A setting, "planner.population" or "trials"; a name, "ga3" or "planner=ga3"; a group; a
+        column of the trials, "expansions"; a topic of the log, "/drive_step".
 
     Returns
     -------
@@ -80,7 +79,7 @@ def topic(word: str) -> str:
     group, equals, name = word.partition("=")
     if equals and group in CHOSEN:
         return chosen(group, name)
-    found = list(_found(word))
+    found = list(_found(word)) or list(_in_run_folders(word))
     if not found:
         raise InputError("help", word, _near(word, _all_words()))
     return "\n\n".join(found)
@@ -103,6 +102,20 @@ def _found(word: str) -> Iterator[str]:
             yield f"{group}={word}: {about(group, word)}"
     if word.partition(".")[0] in CHOSEN:
         yield from _of_setting(word)
+
+
+def _in_run_folders(word: str) -> Iterator[str]:
+    """Tell what a column or a topic is; takes NumPy and more, which settings do without."""
+    from gapath.recorders.mcap.format import TOPICS, schema
+    from gapath.reference.columns import all_columns, column
+
+    if word in all_columns():
+        unit, meaning = column(word)
+        told = f"{unit}: {meaning}" if unit else meaning
+        yield "\n".join([f"{word}, a column of trials.parquet", *_wrapped(told)])
+    if word in TOPICS:
+        fields = textwrap.indent(schema(TOPICS[word]).decode(), "  ")
+        yield f"{word}, messages of run.mcap: {TOPICS[word]}\n{fields}".rstrip()
 
 
 def _of_preset(told: Preset) -> str:

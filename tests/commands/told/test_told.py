@@ -8,10 +8,12 @@ import pytest
 
 from gapath import __main__ as started
 from gapath.commands.told import picture, screen
-from gapath.commands.told.topics import chosen, listed, topic
+from gapath.commands.told.topics import _all_words, chosen, listed, topic
 from gapath.discovery import yaml_names
 from gapath.errors import InputError
 from gapath.grid import GridMap
+from gapath.recorders.mcap.format import TOPICS
+from gapath.reference.columns import all_columns
 from gapath.reference.settings import CHOSEN, presets, root
 
 
@@ -78,6 +80,11 @@ def test_every_word_has_something_to_say():
         for name in yaml_names(group):
             assert topic(name)
     assert "drive.sensor.range = 4" in topic("drive")
+    for name in {*all_columns()} - {*_all_words()}:
+        assert topic(name).startswith(f"{name}, a column of trials.parquet\n      ")
+    for name in TOPICS:
+        assert topic(name).startswith(f"{name}, messages of run.mcap: {TOPICS[name]}")
+    assert "fields: that a graph search expanded" in topic("expansions")
     assert topic("table1").startswith("experiment=table1: KG18 Table 1")
 
 

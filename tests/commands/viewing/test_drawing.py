@@ -111,10 +111,10 @@ def test_a_drive_says_what_its_colours_mean(drives):
     axes = figure.subplots()
     told = drawn(*told_trial(drives, 1, mcap.USUAL))
     told.plot(axes)
-    assert labels(axes) == ["way of the robot", "not seen by it"]
+    assert labels(axes) == ["the robot and its way", "obstacle", "tinted: not seen by it"]
     axes = figure.subplots()
     told.animate().scene(axes)(1)
-    assert labels(axes)[2:] == ["path that it follows", "what its sensor covers"]
+    assert labels(axes)[1:3] == ["path that it follows", "what its sensor covers"]
 
 
 def labels(axes):
