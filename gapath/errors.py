@@ -51,11 +51,11 @@ def _written(found: re.Match[str]) -> str:
 
 def few(items: Sequence[object]) -> str:
     """List things of which there may be many: the first nine, and how many more there are."""
-    rest = len(items) - _FEW
-    return ", ".join(map(str, items[:_FEW])) + (f" and {rest} more" if rest > 0 else "")
+    rest = len(items) - _LISTED
+    return ", ".join(map(str, items[:_LISTED])) + (f" and {rest} more" if rest > 0 else "")
 
 
-_FEW = 9
+_LISTED = 9
 
 
 class InputError(ValueError):

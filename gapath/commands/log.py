@@ -18,10 +18,13 @@ from gapath.events import Event, Finished, RunFinished, RunStarted
 from gapath.recorders import mcap
 from gapath.recorders.mcap import FILE
 from gapath.store.durable import part_of
-from gapath.store.records import MANIFEST, find_run, read_record
+from gapath.store.records import MANIFEST, find_run, is_run, read_record
 from gapath.store.runfolder import WORK
 from gapath.store.settings import text_of
 from gapath.task import find_task
+
+SWEEP = "multirun.yaml"
+"""What Hydra leaves beside the runs of a sweep."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -137,6 +140,9 @@ def _trials(text: str) -> list[int]:
 
 def _log_of(path: Path, arguments: argparse.Namespace) -> Path:
     """Give the log that a file is, or that a run has which is named (`find_run`)."""
+    for folder in (path, arguments.outputs / path):
+        runs = folder.is_dir() and not is_run(folder) and any(map(is_run, folder.iterdir()))
+        require(not runs, path, "an experiment", f"one of its runs, a folder in {folder}")
     is_named = path.is_dir() or path.name == MANIFEST or (_is_key(path) and not path.exists())
     if not is_named:
         return path
@@ -232,7 +238,8 @@ def _lacking(lost: mcap.Lost) -> str:
 
 
 def _verify(arguments: argparse.Namespace) -> int:
-    return max([_verified(path, arguments) for path in arguments.files])
+    given = [path for path in arguments.files if path.name != SWEEP]  # it lies among a sweep's runs
+    return max([_verified(path, arguments) for path in given or arguments.files])
 
 
 def _verified(path: Path, arguments: argparse.Namespace) -> int:

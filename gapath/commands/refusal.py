@@ -21,8 +21,8 @@ from hydra.plugins.config_source import ConfigResult
 from omegaconf import DictConfig
 from omegaconf.errors import OmegaConfBaseException
 
-from gapath.discovery import OFFERS, kinds, with_setting, yaml_names
-from gapath.errors import InputError, Missing, did_you_mean, one_of, packages_of, require
+from gapath.discovery import OFFERS, kinds, with_setting, yaml_names, yaml_values
+from gapath.errors import InputError, Missing, did_you_mean, few, one_of, packages_of, require
 from gapath.running.config import conf_folder
 from gapath.store.settings import LONGEST_WHOLE, plain_yaml
 from gapath.task import find_task
@@ -155,7 +155,12 @@ def _found(error: BaseException, words: Sequence[str], sweep: bool) -> InputErro
             return missing
         with _hydra():
             names = GlobalHydra.instance().config_loader().get_group_options(group)
-        return InputError(group, name, one_of(name, names))
+        right = one_of(name, names)
+        if group in OFFERS and name in kinds(group):
+            of_it = [y for y in yaml_names(group) if yaml_values(group, y)["kind"] == name]
+            there = f"is that of {few(of_it)}" if of_it else f"has no conf/{group}/{name}.yaml yet"
+            right += f"; the kind {name} {there}"
+        return InputError(group, name, right)
     with _hydra():
         if isinstance(error, OverrideParseException):
             return _unreadable(error.override)

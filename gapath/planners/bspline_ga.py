@@ -62,16 +62,17 @@ class Planner:
     mixing : float
         D of eq. (6), the fitter parent's share, in [0, 1].
     mutation_probability : float
-        For each gene.
+        With which each gene of a child is drawn anew.
     line_jitter : int
-        Largest change of a coordinate of the straight line, in fields.
+        First third of the initial population, points on the straight line from start to target:
+        largest change of a coordinate, in fields.
     line_jitter_probability : float
-        For each of those coordinates.
+        Likewise: with which each coordinate is changed.
     neighbourhood : int
-        Reach of the points around the start, in fields.
+        Second third, points around the start: how far away at most, in fields.
     margin : int
-        Distance from the border of the points all over the map, in fields; on a smaller map
-        as much as leaves its middle.
+        Last third, points all over the map: distance from its border, in fields; on a smaller
+        map as much as leaves its middle.
     clip_to_map : bool
         Move genes outside the map to its border.
     vln : float

@@ -34,19 +34,26 @@ class Root:
         "plan" on a known map, "drive" through an unknown one, or another of `gapath.tasks`.
     name : str
         The experiment: run folders lie in ``<output>/<name>``.
-    map, recorder : dict
-        The chosen components.
-    seed, trials : int
-        Trials 0 to trials - 1 use the random streams (seed, trial); so many of each problem where
-        the task poses several.
-    shard, shards : int
-        Which part of the trials, of how many (`gapath.running.shards`).
+    map : dict
+        The chosen map.
+    recorder : dict
+        The chosen recorders, by name.
+    seed : int
+        Trial t draws from the random stream (seed, t).
+    trials : int
+        How many, 0 to trials - 1; so many of each problem where the task poses several.
+    shard : int
+        Which part of the trials this run does (`gapath.running.shards`), from 0.
+    shards : int
+        Into how many parts the trials are divided.
     corner_cutting : str
         Name of a `CornerCutting` rule, in lower case.
     output : str
         Folder of the run folders.
-    force, provenance : bool
-        Run again what is there already; say where runs come from: code, machine, who asked.
+    force : bool
+        Run again what is there already.
+    provenance : bool
+        Say in the manifest where the run comes from: code, machine, who asked.
     threads : int
         Threads that do the trials of a run, if the task has any use for them.
     kernels : str

@@ -73,8 +73,9 @@ class Answer:
 
     @cached_property
     def remarks(self) -> list[str]:
-        """What trials were paired by, and what the numbers do not say."""
-        return [*_pairing(self.choice, self.groups), *_limits(self.choice, self.groups)]
+        """What trials were paired by, which tests were made, what the numbers do not say."""
+        pairing, limits = _pairing(self.choice, self.groups), _limits(self.choice, self.groups)
+        return [*pairing, *_tests(self.comparisons), *limits]
 
     @cached_property
     def by_map(self) -> Table | None:
@@ -169,6 +170,15 @@ def _items(texts: Iterable[str]) -> str:
 def _picture(figure: Figure) -> str:
     alt, caption = in_markdown(figure.alt), in_markdown(figure.caption)
     return f"![{alt}]({figure.name}.svg)\n\n{caption}"
+
+
+def _tests(comparisons: Iterable[Comparison]) -> list[str]:
+    told = []
+    for each in comparisons:
+        names = {pair.difference.test for pair in each.pairs if pair.difference.p is not None}
+        if names:
+            told.append(f"{WORDINGS[each.quantity].short} by {' or '.join(sorted(names))}")
+    return [f"Tests of two groups, their p after Holm: {'; '.join(told)}."] if told else []
 
 
 def _pairing(choice: Choice, groups: Groups) -> list[str]:

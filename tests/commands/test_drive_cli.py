@@ -134,6 +134,12 @@ def test_a_run_folder_or_its_manifest_stands_for_its_log(gapath, tmp_path, capfd
     assert code == 0
     lines = [line.partition(": reproduced")[0] for line in out.splitlines()]
     assert lines == [str(folder), str(manifest), str(log)]
+    (folder.parent / "multirun.yaml").write_text("hydra: {}\n")  # as a sweep leaves it
+    assert call("verify", *folder.parent.iterdir())[::2] == (0, "")
+    for experiment in ("drive", folder.parent):
+        code, _, err = call("info", experiment, "--outputs", folder.parent.parent)
+        right = f"an experiment, expected one of its runs, a folder in {folder.parent}"
+        assert (code, err) == (2, f"gapath-log: {experiment}: got {right}\n")
     assert f"file:         {log}, " in call("info", folder)[1]
     assert call("rerun", manifest)[1] == f"{folder / 'trial-0.rrd'}\n"
 

@@ -132,6 +132,9 @@ def test_info_of_a_whole_log(log, capsys):
     lines = {line.split(":")[0]: line for line in out.splitlines()}
     assert lines["state"].endswith(" whole")
     assert lines["trials"].endswith("30 of 30: 20 found, 10 not_found")
+    rare = "2, 5, 8, 11, 14, 17, 20, 23, 26 and 1 more"
+    assert lines["not_found"] == f"{'not_found:':14}trial {rare}"
+    assert "found" not in lines
     assert "leer, instance 0, 6 x 4 fields of 0.1 m" in lines["map"]
     assert "(0, 0) to (2, 1)" in lines["problem"]
     assert "  /ga_run       30" in out.splitlines()

@@ -50,6 +50,8 @@ CASES = {
     # A choice or a value that cannot be.
     "planner=null": f"planner: got null, expected {MAPS}",
     "-m planner=null": f"planner: got null, expected {MAPS}",
+    "planner=grid_search": rf"planner: got grid_search, expected {MAPS}.*; the kind grid_search is "
+    r"that of astar, .*",
     "planner=3": f"planner: got 3, expected {MAPS}",
     "planner=[ga1,ga2]": rf"planner: got \[ga1,ga2\], expected {MAPS}",
     "planner={populaton:3}": r"planner\.populaton: got an unknown name, .* mean population\?",

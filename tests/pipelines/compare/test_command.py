@@ -29,6 +29,9 @@ def test_an_analysis_written_by_itself_agrees(sweep, tmp_path, capsys):
         frame = pd.read_parquet(folder / "trials.parquet")
         frames.append(frame.assign(group=settings["planner"]["population"]))
     trials = pd.concat(frames)
+    told = (tmp_path / "comparison.md").read_text()
+    assert "Tests of two groups, their p after Holm: Success by McNemar, exact; " in told
+    assert "; Cost by Wilcoxon, signed rank" in told
     names = ["feasible", "evaluations", "plan_time_s", "cost"]
     by = ["map", "seed", "trial"]
     wide = trials.pivot_table(index=by, columns="group", dropna=False, values=names)
