@@ -12,7 +12,15 @@ from hypothesis import settings
 TESTS = Path(__file__).parent
 # twins, strategies and commands; what harnesses share; the benchmarks, which are not installed
 sys.path[:0] = map(
-    str, (TESTS, TESTS / "twins", TESTS / "reliability", TESTS / "recorders", TESTS.parent)
+    str,
+    (
+        TESTS,
+        TESTS / "twins",
+        TESTS / "reliability",
+        TESTS / "recorders",
+        TESTS / "kernels" / "cuda",
+        TESTS.parent,
+    ),
 )
 sys.path.append(str(TESTS / "plugin"))  # not before that package where it is installed
 

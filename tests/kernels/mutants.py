@@ -29,7 +29,9 @@ KERNELS = ROOT / "gapath" / "kernels"
 PLANNERS = [f"tests/planners/test_{name}.py" for name in ("bspline_ga", "row_column_ga")]
 
 LEFT_OUT = {"jit", "kg18/evaluation", "kg18/field_lanes", "kg18/lanes", "kg18/vectors"}
-"""The decorator, and vectors, which only the compiler understands."""
+LEFT_OUT |= {"cuda/compiler", "cuda/evolution"}
+"""The decorator, vectors, which only the compiler understands, and what a GPU or its simulator runs
+in a process of its own."""
 
 SLOW, BUDGET = 5, 5
 """Seconds of computing for a test, else it is left out, and for a mutant's tests: those that call

@@ -81,8 +81,10 @@ def basis_functions(control_points: int, u: Fraction) -> list[Fraction]:
 
 
 @lru_cache
-def basis(control_points: int, way_points: int, per_span: bool) -> Basis:
-    """Compute the basis functions at equidistant parameters.
+def fractions(
+    control_points: int, way_points: int, per_span: bool
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Compute the basis functions at equidistant parameters, as whole numbers.
 
     Parameters
     ----------
@@ -95,17 +97,37 @@ def basis(control_points: int, way_points: int, per_span: bool) -> Basis:
 
     Returns
     -------
-    Basis
-        One row a way point.
+    numerators : (w, k) int64
+        One row a way point; each sums to its denominator, and at most three are not 0.
+    denominators : (w,) int64
+        The least of each row.
     """
     spans = control_points - DEGREE if per_span else 1
     pieces = spans * (way_points - 1)
     rows = [basis_functions(control_points, Fraction(j, pieces)) for j in range(pieces + 1)]
     denominators = [math.lcm(*(value.denominator for value in row)) for row in rows]
-    return Basis(
-        np.array([[float(value) for value in row] for row in rows]),
-        np.array([0.5 + 0.25 / denominator for denominator in denominators]),
-    )
+    numerators = [
+        [int(value * d) for value in row] for row, d in zip(rows, denominators, strict=True)
+    ]
+    return np.array(numerators), np.array(denominators)
+
+
+@lru_cache
+def basis(control_points: int, way_points: int, per_span: bool) -> Basis:
+    """Compute the basis functions at equidistant parameters.
+
+    Parameters
+    ----------
+    control_points, way_points, per_span
+        As of `fractions`.
+
+    Returns
+    -------
+    Basis
+        One row a way point.
+    """
+    numerators, denominators = fractions(control_points, way_points, per_span)
+    return Basis(numerators / denominators[:, None], 0.5 + 0.25 / denominators)
 
 
 @kernel

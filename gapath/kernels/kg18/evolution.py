@@ -6,7 +6,7 @@ takes numba longer than an epoch.
 
 from collections.abc import Mapping
 from functools import partial
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from gapath.kernels.kg18.population import (
     InitialPopulation,
     Mixing,
     gene_limits,
+    initial_changes,
     initialise,
     rank_best,
     vary,
@@ -40,7 +41,8 @@ SETTINGS = np.dtype(
         ("line_jitter_threshold", np.uint64),
         ("neighbourhood", np.int64),
         ("margin", np.int64),
-    ]
+    ],
+    align=True,  # as a GPU reads them
 )
 """Settings of the genetic algorithm, as the kernel takes them: an array of one row."""
 
@@ -124,12 +126,7 @@ def evolve(
         (denominator - numerator) / denominator,
         0.5 + 0.25 / denominator,
     )
-    initial = InitialPopulation(
-        setting["line_jitter"],
-        setting["line_jitter_threshold"],
-        setting["neighbourhood"],
-        setting["margin"],
-    )
+    initial = InitialPopulation(setting["line_jitter"], setting["neighbourhood"], setting["margin"])
 
     population, offspring = chromosome_matrix(size, genes), chromosome_matrix(size, genes)
     columns = population.shape[1]
@@ -143,6 +140,9 @@ def evolve(
     memory = workspace(basis)
     limits = np.empty((2, columns), dtype=np.int32)
     gene_limits(limits, Ends(*ends), genes, rows, cols, setting["clip_to_map"])
+    middle = np.empty((3, columns), dtype=np.int32)
+    first_changes = np.empty((3, 2, columns), dtype=np.int32)
+    initial_changes(middle, first_changes, Ends(*ends), genes, rows, cols, initial)
     half = min(rows, cols) // 2  # KG18 Sec. 3.7: a gene changes by at most half the smaller side
     changes = np.empty((2, columns), dtype=np.int32)
     changes[0], changes[1] = 2 * half + 1, half
@@ -154,7 +154,16 @@ def evolve(
     for run in range(streams.shape[0]):
         stream = streams[run]
         fill(stream, first[:-GENES])
-        initialise(way, population, size, Ends(*ends), rows, cols, limits, initial, first)
+        initialise(
+            way,
+            population,
+            size,
+            limits,
+            middle,
+            first_changes,
+            setting["line_jitter_threshold"],
+            first,
+        )
         evaluated = np.int64(0)  # individuals before this one carry their key over
         epoch = 0
         while True:
@@ -208,6 +217,17 @@ def evolve(
             keys, offspring_keys = offspring_keys, keys
             evaluated = selected
         epochs[run] = epoch
+
+
+class Outcomes(NamedTuple):
+    """What n runs come to, without their histories."""
+
+    epochs: NDArray[np.int64]
+    """(n,) epochs taken."""
+    keys: NDArray[np.int64]
+    """(n,) the best individual's key."""
+    chromosomes: NDArray[np.int32]
+    """(n, 2 k) the best individual."""
 
 
 VECTORS, SCALAR = "vectors", "scalar"

@@ -20,10 +20,9 @@ from gapath.kernels.rng import happens, low
 
 
 class InitialPopulation(NamedTuple):
-    """Settings of the initial population (KG18 Sec. 3.3)."""
+    """Ranges of the initial population (KG18 Sec. 3.3)."""
 
     line_jitter: int
-    line_jitter_threshold: np.uint64
     neighbourhood: int
     margin: int
 
@@ -66,6 +65,40 @@ class Mixing(NamedTuple):
     share: float
     rest: float
     rounding: float
+
+
+@kernel(inner=True)
+def changed(
+    gene: int,
+    g: int,
+    word: np.uint64,
+    shift: int,
+    threshold: np.uint64,
+    changes: NDArray[np.int32],
+    limits: NDArray[np.int32],
+) -> int:
+    """Change a gene at random, and keep it within its limits (KG18 Sec. 3.7).
+
+    Parameters
+    ----------
+    gene : int
+        The gene, crossed.
+    g : int
+        Its number.
+    word : uint64
+        Its random word.
+    shift, threshold, changes, limits
+        As of `vary`.
+
+    Returns
+    -------
+    int
+        The gene of the child.
+    """
+    if happens(word, threshold):
+        values = np.int64(changes[0, g])
+        gene += low(word >> np.uint64(shift), values) - changes[1, g]
+    return min(max(gene, np.int64(limits[0, g])), np.int64(limits[1, g]))
 
 
 @kernel
@@ -141,10 +174,56 @@ def vary(
             mixed = mixing.share * parents[fitter, g] + mixing.rest * parents[other, g]
             gene = np.int64(np.floor(mixed + mixing.rounding))
             word = words[first + g - 2]
-            if happens(word, threshold):
-                values = np.int64(changes[0, g])
-                gene += low(word >> np.uint64(shift), values) - changes[1, g]
-            children[child, g] = min(max(gene, np.int64(limits[0, g])), np.int64(limits[1, g]))
+            children[child, g] = changed(gene, g, word, shift, threshold, changes, limits)
+
+
+@kernel
+def initial_changes(
+    middle: NDArray[np.int32],
+    changes: NDArray[np.int32],
+    ends: Ends,
+    genes: int,
+    rows: int,
+    cols: int,
+    settings: InitialPopulation,
+) -> None:
+    """Say how each third of the initial population is drawn (KG18 Sec. 3.3).
+
+    Individual i of P belongs to part 3 i // P: (0) the straight line from start to target
+    in k - 1 equal segments, each inner coordinate changed with a fixed probability;
+    (1) inner points around the start; (2) inner points all over the map.
+
+    Parameters
+    ----------
+    middle : (3, n) int32
+        Overwritten, part by part, with what each gene is a change of; n >= 2 k.
+    changes : (3, 2, n) int32
+        Overwritten with how many values the change has, and how far below 0 the least one is.
+    ends : Ends
+        First and last control point of every individual.
+    genes : int
+        2 k; start, target and what follows are overwritten with 0.
+    rows, cols : int
+        Size of the map.
+    settings : InitialPopulation
+        Ranges.
+    """
+    segments = genes // 2 - 1
+    middle[:], changes[:] = 0, 0
+    for g in range(2, genes - 2):
+        start, target, side = (
+            (ends.start_y, ends.target_y, rows) if g % 2 else (ends.start_x, ends.target_x, cols)
+        )
+        d = target - start
+        middle[0, g] = start + (2 * (g // 2) * d + segments) // (2 * segments)
+        changes[0, 0, g] = 2 * settings.line_jitter + 1
+        changes[0, 1, g] = settings.line_jitter
+        middle[1, g] = start
+        changes[1, 0, g] = 2 * settings.neighbourhood + 1
+        changes[1, 1, g] = settings.neighbourhood
+        margin = min(settings.margin, (side - 1) // 2)
+        middle[2, g] = margin
+        changes[2, 0, g] = side - 2 * margin
 
 
 @kernel
@@ -152,18 +231,13 @@ def initialise(
     way: Way,
     population: NDArray[np.int32],
     size: int,
-    ends: Ends,
-    rows: int,
-    cols: int,
     limits: NDArray[np.int32],
-    settings: InitialPopulation,
+    middle: NDArray[np.int32],
+    changes: NDArray[np.int32],
+    line_jitter_threshold: np.uint64,
     words: NDArray[np.uint64],
 ) -> None:
     """Fill the initial population, one third each in three ways (KG18 Sec. 3.3).
-
-    Individual i of P belongs to part 3 i // P: (0) the straight line from start to target
-    in k - 1 equal segments, each inner coordinate changed with a fixed probability;
-    (1) inner points around the start; (2) inner points all over the map.
 
     Parameters
     ----------
@@ -173,55 +247,30 @@ def initialise(
         The first P rows are overwritten, but for start and target.
     size : int
         P.
-    ends : Ends
-        First and last control point of every individual.
-    rows, cols : int
-        Size of the map.
     limits : (2, m) int32
         `gene_limits`.
-    settings : InitialPopulation
-        Ranges and probability.
+    middle, changes : (3, m) and (3, 2, m) int32
+        `initial_changes`.
+    line_jitter_threshold : uint64
+        The probability of a change of the straight line, as of `vary`.
     words : (P * (2 k - 4) + GENES,) uint64
         Random words, one for each inner gene.
     """
     inner = (words.shape[0] - GENES) // size
-    segments = inner // 2 + 1
-    middle = np.zeros((1, limits.shape[1]), dtype=np.int32)  # what a part is a change of
-    changes = np.zeros((2, limits.shape[1]), dtype=np.int32)
     i = np.int64(0)
     for part in range(3):
-        for g in range(2, inner + 2):
-            start, target, side = (
-                (ends.start_y, ends.target_y, rows)
-                if g % 2
-                else (ends.start_x, ends.target_x, cols)
-            )
-            if part == 0:
-                d = target - start
-                middle[0, g] = start + (2 * (g // 2) * d + segments) // (2 * segments)
-                changes[0, g] = 2 * settings.line_jitter + 1
-                changes[1, g] = settings.line_jitter
-            elif part == 1:
-                middle[0, g] = start
-                changes[0, g] = 2 * settings.neighbourhood + 1
-                changes[1, g] = settings.neighbourhood
-            else:
-                margin = min(settings.margin, (side - 1) // 2)
-                middle[0, g] = margin
-                changes[0, g] = side - 2 * margin
-                changes[1, g] = 0
         while i < size and 3 * i // size == part:
             vary(
                 way,
                 middle,
-                np.int64(0),
-                np.int64(0),
+                part,
+                part,
                 Mixing(1.0, 0.0, 0.5),
                 words,
                 i * inner,
                 32 if part > 0 else 0,
-                np.uint64(1 << 32) if part > 0 else settings.line_jitter_threshold,
-                changes,
+                np.uint64(1 << 32) if part > 0 else line_jitter_threshold,
+                changes[part],
                 limits,
                 population,
                 i,

@@ -1,5 +1,6 @@
 """The B-spline against SciPy, against de Boor's algorithm, and by hand."""
 
+import math
 from fractions import Fraction
 
 import naive
@@ -9,7 +10,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 
-from gapath.kernels.kg18.bspline import basis, basis_functions, knots, rasterise, way_points
+from gapath.kernels.kg18.bspline import (
+    basis,
+    basis_functions,
+    fractions,
+    knots,
+    rasterise,
+    way_points,
+)
 from gapath.kernels.raster import COORDINATE_LIMIT, polyline
 
 
@@ -37,6 +45,16 @@ def test_basis_equals_scipy(control_points, per_span):
     expected = np.stack([curve(u) for curve in curves], axis=1)
     np.testing.assert_allclose(ours.weights, expected, atol=1e-12)
     np.testing.assert_allclose(ours.weights.sum(axis=1), 1.0, rtol=1e-15)
+
+
+@given(st.integers(3, 32), st.integers(2, 64), st.booleans())
+def test_whole_numbers_are_the_same_basis_functions(k, samples, per_span):
+    numerators, denominators = fractions(k, samples, per_span)
+    pieces = len(denominators) - 1
+    for j in {0, 1, pieces // 2, pieces}:
+        of_row = [Fraction(int(n), int(denominators[j])) for n in numerators[j]]
+        assert of_row == basis_functions(k, Fraction(j, pieces))
+        assert math.lcm(*(each.denominator for each in of_row)) == denominators[j]
 
 
 @given(

@@ -11,6 +11,7 @@ from gapath.kernels.kg18.population import (
     InitialPopulation,
     Mixing,
     gene_limits,
+    initial_changes,
     initialise,
     rank_best,
     vary,
@@ -39,9 +40,12 @@ def words(n, seed=0):
 
 def initial(size=300, k=5, jitter=0.5, margin=4):
     population = np.full((size + 1, width(2 * k)), -7, dtype=np.int32)
-    settings = InitialPopulation(12, probability_threshold(jitter), 7, margin)
-    drawn = words(size * (2 * k - 4))
-    initialise(WAYS[0], population, size, ENDS, ROWS, COLS, limits(2 * k), settings, drawn)
+    middle = np.empty((3, width(2 * k)), dtype=np.int32)
+    changes = np.empty((3, 2, width(2 * k)), dtype=np.int32)
+    ranges = InitialPopulation(12, 7, margin)
+    initial_changes(middle, changes, ENDS, 2 * k, ROWS, COLS, ranges)
+    threshold, drawn = probability_threshold(jitter), words(size * (2 * k - 4))
+    initialise(WAYS[0], population, size, limits(2 * k), middle, changes, threshold, drawn)
     assert (population[size] == -7).all()
     return population[:size, 2 : 2 * k - 2].reshape(size, k - 2, 2)
 

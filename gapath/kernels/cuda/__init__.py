@@ -1,0 +1,1 @@
+"""Kernels for CUDA GPUs: KG18's evolution, a run a thread, with the processor's own kernels."""
