@@ -64,6 +64,10 @@ numbers: $(VENV)/ready ## which numbers of the pages do new runs no longer give?
 test: $(VENV)/ready ## run all tests
 	@$(BIN)/python -m pytest
 
+.PHONY: test-cuda
+test-cuda: $(VENV)/ready ## try KG18's evolution on this machine's GPU; without one its tests say what is missing
+	@$(BIN)/python -m pytest -n 0 -rs tests/kernels/cuda
+
 .PHONY: reproduce
 reproduce: $(VENV)/ready ## do every published experiment, small, and compare with its golden hashes (three minutes)
 	@$(BIN)/python -m pytest --tb=no --figures tests/test_golden.py -k an_experiment

@@ -6,6 +6,7 @@ fields on them, eq. (5). The best quarter survives and breeds.
 """
 
 import copy
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property, partial
@@ -14,10 +15,11 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from gapath.errors import Checks, require, require_memory
+from gapath.errors import Checks, require, require_extra, require_memory
 from gapath.history.evolution import Evolution
+from gapath.kernels.cuda.card import Card
 from gapath.kernels.history.epochs import History, fitness_history
-from gapath.kernels.kg18.bspline import Basis, basis, rasterise, way_points
+from gapath.kernels.kg18.bspline import Basis, basis, fractions, rasterise, way_points
 from gapath.kernels.kg18.evolution import (
     KERNELS,
     SETTINGS,
@@ -29,6 +31,7 @@ from gapath.kernels.kg18.evolution import (
 from gapath.kernels.lines import KEY_BITS, ONE_OBSTACLE
 from gapath.kernels.rng import Stream, probability_threshold
 from gapath.kernels.units import SCALE
+from gapath.planning.device import CPU
 from gapath.problem import Plan, PlanStatus, Query, no_path
 
 Arguments: TypeAlias = tuple[
@@ -39,6 +42,10 @@ Arguments: TypeAlias = tuple[
     NDArray[np.float64],
     NDArray[np.float64],
 ]
+
+
+End: TypeAlias = tuple[int, int, NDArray[np.int32]]
+"""What a run comes to: its epochs, and the best individual's key and chromosome."""
 
 
 @dataclass(frozen=True)
@@ -95,6 +102,8 @@ class Planner:
     vln: float
     evolve: Evolve = field(init=False, repr=False, compare=False)
     """The kernels that plan; no setting, as all of them plan the same."""
+    card: Card | None = field(init=False, repr=False, compare=False)
+    """A GPU that plans instead; no setting either."""
 
     exact = False
     minimises = "weights"
@@ -125,6 +134,7 @@ class Planner:
             f"{self.population}, {self.max_epochs}",
         )
         object.__setattr__(self, "evolve", KERNELS[self.kernels[0]])
+        object.__setattr__(self, "card", None)
 
     @property
     def kernels(self) -> tuple[str, ...]:
@@ -159,11 +169,48 @@ class Planner:
         return other
 
     @property
-    def most_at_once(self) -> int:
-        """Runs of one `plan_many`, at most 64: more save nothing.
+    def device(self) -> str:
+        """What plans: "cpu", or the GPU's name."""
+        return CPU if self.card is None else self.card.name
 
-        Their histories take 4 MiB at most, and they end within seconds, so that threads share them.
+    def on(self, device: str) -> "Planner":
+        """Give a planner that plans the same plans on a GPU.
+
+        The processor does again what somebody wants to see the history of: a plan's epochs.
+
+        Parameters
+        ----------
+        device : str
+            CUDA.
+
+        Returns
+        -------
+        Planner
+            A copy.
+
+        Raises
+        ------
+        InputError
+            If there is no GPU, or no driver or package for it.
         """
+        require_extra(f"device={device}", "cuda", "numba-cuda")
+        from gapath.kernels.cuda.compiler import card
+
+        other = copy.copy(self)
+        object.__setattr__(other, "card", card())
+        return other
+
+    @property
+    def most_at_once(self) -> int:
+        """Runs of one `plan_many`: of a GPU's as many as it takes in a launch, else at most 64.
+
+        More save nothing on a processor. Their histories take 4 MiB at most, and they end within
+        seconds, so that threads share them.
+        """
+        if self.card is not None:
+            from gapath.kernels.cuda.evolution import MOST_RUNS
+
+            return MOST_RUNS
         history = self.max_epochs * (24 + 8 * self.control_points)
         evaluated = self.max_epochs * self.population
         return max(min((1 << 22) // history, 10**7 // evaluated, 64), 1)
@@ -221,9 +268,9 @@ class Planner:
         Plan
             FOUND with the best path, or NOT_FOUND with the best fitness.
         """
-        return self.plan_many(problem, stream[None])[0]
+        return next(iter(self.plan_many(problem, stream[None])))
 
-    def plan_many(self, problem: Query, streams: NDArray[np.uint64]) -> list[Plan]:
+    def plan_many(self, problem: Query, streams: NDArray[np.uint64]) -> Iterable[Plan]:
         """Run the genetic algorithm once for each stream, in one call of the kernel.
 
         Parameters
@@ -235,29 +282,56 @@ class Planner:
 
         Returns
         -------
-        list of Plan
+        iterable of Plan
             As `plan` gives them.
         """
-        results = run_evolutions(*self.arguments(problem), streams, self.evolve)
-        return [self._plan(result) for result in results]
+        given = self.arguments(problem)
+        if self.card is not None:
+            return self._plans_of(self.card, given, streams)
+        results = run_evolutions(*given, streams, self.evolve)
+        return [self._plan(_end(result), partial(self._evolution, result)) for result in results]
 
-    def _plan(self, result: History) -> Plan:
-        key = int(result.epochs["key"][-1])
+    def _plans_of(
+        self, card: Card, given: Arguments, streams: NDArray[np.uint64]
+    ) -> Iterator[Plan]:
+        """Plan on a GPU; of what it gives a plan is made when it is reached, one by one."""
+        from gapath.kernels.cuda.evolution import outcomes
+
+        begun = streams.copy()
+        whole = fractions(self.control_points, self.way_points, self.sampling == "span")
+        found = outcomes(card, *given[:4], whole, streams)
+        ends = zip(found.epochs.tolist(), found.keys.tolist(), found.chromosomes, strict=True)
+        return (
+            self._plan(end, partial(self._again, given, begun[i], end))
+            for i, end in enumerate(ends)
+        )
+
+    def _again(self, given: Arguments, stream: Stream, end: End) -> Evolution:
+        """Do a GPU's run on the processor, whose history is the truth."""
+        (result,) = run_evolutions(*given, stream[None].copy(), self.evolve)
+        epochs, key, chromosome = _end(result)
+        if (epochs, key, chromosome.tolist()) != (end[0], end[1], end[2].tolist()):
+            told = f"{epochs} epochs and key {key}, on {self.device} {end[0]} and {end[1]}"
+            raise RuntimeError(f"a plan comes to something else on the processor: {told}")
+        return self._evolution(result)
+
+    def _plan(self, end: End, trace: Callable[[], Evolution]) -> Plan:
+        epochs, key, chromosome = end
         found = key < ONE_OBSTACLE
         return Plan(
             PlanStatus.FOUND if found else PlanStatus.NOT_FOUND,
-            path=rasterise(result.chromosomes[-1], *self.basis) if found else no_path(),
+            path=rasterise(chromosome, *self.basis) if found else no_path(),
             weights=(key & (ONE_OBSTACLE - 1)) / SCALE,
             obstacles=key >> KEY_BITS,
             vln=self.vln,
-            epochs=len(result.epochs),
-            evaluations=evaluations(self.population, len(result.epochs)),
-            trace=partial(self._evolution, result),
-            lines=partial(self._lines, result) if found else no_path,
+            epochs=epochs,
+            evaluations=evaluations(self.population, epochs),
+            trace=trace,
+            lines=partial(self._lines, chromosome) if found else no_path,
         )
 
-    def _lines(self, result: History) -> NDArray[np.int32]:
-        return np.asarray(way_points(result.chromosomes[-1:], self.basis)[0])
+    def _lines(self, chromosome: NDArray[np.int32]) -> NDArray[np.int32]:
+        return np.asarray(way_points(chromosome[None], self.basis)[0])
 
     def _evolution(self, result: History) -> Evolution:
         best, mean = fitness_history(result.epochs, self.population, self.vln, SCALE)
@@ -268,3 +342,7 @@ class Planner:
             way_points=way_points(result.chromosomes, self.basis),
             genotype="control_points",
         )
+
+
+def _end(result: History) -> End:
+    return len(result.epochs), int(result.epochs["key"][-1]), result.chromosomes[-1]

@@ -1,5 +1,6 @@
 """What every planner must offer."""
 
+from collections.abc import Iterable
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -70,7 +71,7 @@ class Batching(Protocol):
     def most_at_once(self) -> int:
         """Plans that one call is best asked for at most; what they keep has to fit memory."""
 
-    def plan_many(self, problem: Query, streams: NDArray[np.uint64]) -> list[Plan]:
+    def plan_many(self, problem: Query, streams: NDArray[np.uint64]) -> Iterable[Plan]:
         """Plan once for each stream, as `Planner.plan` does.
 
         Parameters
@@ -82,6 +83,7 @@ class Batching(Protocol):
 
         Returns
         -------
-        list of Plan
-            In their order.
+        iterable of Plan
+            In their order; all is planned when it is given, but a plan may take up room only when
+            it is reached.
         """

@@ -2,13 +2,14 @@
 
 import math
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from gapath.errors import InputError
 from gapath.kernels.rng import stream
+from gapath.planning.device import CPU, device_of
 from gapath.planning.flaw import flaw
 from gapath.planning.planner import Batching, Planner
 from gapath.planning.threads import in_order
@@ -134,7 +135,8 @@ def plan_trials(
         Keys of the random streams.
     threads : int
         Threads that plan. With more than one a trial's time may hold a wait for another, and
-        where the planner plans batches each trial has its batch's mean time.
+        where the planner plans batches each trial has its batch's mean time, as it has where a
+        GPU plans.
     first : int
         The trial to begin with.
 
@@ -156,19 +158,24 @@ def plan_trials(
         return
     planner.plan(problem, stream(seed, 0))  # compiles the kernels before the clock runs
 
-    many = planner if threads > 1 and isinstance(planner, Batching) else None
+    elsewhere = device_of(planner) != CPU
+    many = planner if (threads > 1 or elsewhere) and isinstance(planner, Batching) else None
 
-    def work(batch: range) -> list[TimedPlan]:
+    def work(batch: range) -> Iterator[TimedPlan]:
         randoms = [stream(seed, number) for number in batch]
         begin = time.perf_counter()
+        plans: Iterable[Plan]
         if many:
             plans = many.plan_many(problem, np.array(randoms))
         else:
             plans = [planner.plan(problem, random) for random in randoms]
         mean = (time.perf_counter() - begin) / len(batch)
-        return [TimedPlan(number, plan, mean) for number, plan in zip(batch, plans, strict=True)]
+        return (TimedPlan(number, plan, mean) for number, plan in zip(batch, plans, strict=True))
 
-    pieces = batches(trials, threads, many.most_at_once if many else 1, first)
+    most = many.most_at_once if many else 1
+    pieces = batches(trials, threads, most, first)
+    if elsewhere:  # nobody waits for the last ones
+        pieces = (range(at, min(at + most, trials)) for at in range(first, trials, most))
     for answers in in_order(work, pieces, threads):
         for answer in answers:
             _check(problem, planner, answer.plan, seed, answer.number)

@@ -16,6 +16,7 @@ from gapath.errors import InputError, require
 from gapath.events import Event, RunFinished, RunStarted
 from gapath.grid import Field, GridMap
 from gapath.planning.acceleration import AUTO, with_kernels
+from gapath.planning.device import CPU
 from gapath.problem import CornerCutting, Plan, Problem
 from gapath.running.config import Root, read_problem, settings_of, split
 from gapath.running.naming import Method, changes_of, check_name, map_name, usual_values
@@ -25,7 +26,7 @@ from gapath.store.settings import flatten, nested
 from gapath.task import Batch, Posing, Task, find_task
 
 _HOW = {"recorder": {}, "output": "-", "force": False, "threads": 1, "kernels": AUTO}
-_HOW |= {"provenance": False}
+_HOW |= {"device": CPU, "provenance": False}
 """What a log does not say, since it changes nothing in it."""
 
 

@@ -15,6 +15,7 @@ from gapath.errors import InputError, one_of, require
 from gapath.events import Recorder, Settings
 from gapath.grid import GridMap
 from gapath.planning.acceleration import with_kernels
+from gapath.planning.device import CPU, on_device
 from gapath.problem import CornerCutting, Problem
 from gapath.running.naming import Method, check_name, map_name, method_of
 from gapath.running.posing import first_of, in_fields
@@ -58,6 +59,8 @@ class Root:
         Threads that do the trials of a run, if the task has any use for them.
     kernels : str
         Which kernels compute: "auto", or a name that one of the task's planners knows.
+    device : str
+        What plans: "cpu", or "cuda", a GPU, where task and planner can be computed there.
     """
 
     task: str
@@ -73,10 +76,11 @@ class Root:
     force: bool
     threads: int
     kernels: str
+    device: str
     provenance: bool
 
 
-HOW = ("output", "force", "threads", "kernels", "provenance")
+HOW = ("output", "force", "threads", "kernels", "device", "provenance")
 """Settings of how to run, which change no result: no part of a run's settings."""
 
 
@@ -184,14 +188,16 @@ def make_run(
     require(0 <= root.seed < 2**64, "seed", root.seed, "an integer in [0, 2^64)")
     require(root.output.strip() != "", "output", repr(root.output), "a folder")
     check_name(root.name)
-    useful = task.threaded or root.threads == 1
+    alone = root.threads == 1
+    require(alone or root.device == CPU, "threads", root.threads, f"1 with device={root.device}")
+    useful = task.threaded or alone
     require(useful, "threads", root.threads, f"1 with task={task.name}, which they do not speed up")
     asked = any(name.partition(".")[0] == "recorder" for name in overridden)
     recorders, left_out = build_recorders(root.recorder, asked)
     root.recorder = {name: root.recorder[name] for name in recorders}
     settings = settings_of(root, chosen)
     with watched() as method_inputs:
-        made = with_kernels(task.make(settings), root.kernels)
+        made = on_device(with_kernels(task.make(settings), root.kernels), root.device)
         maps = made.read()
     with watched() as map_inputs:
         problem = read_problem(root, made, maps)

@@ -14,6 +14,7 @@ import yaml
 from gapath.discovery import component_of
 from gapath.errors import InputError, printable
 from gapath.events import Event, RunFinished, RunStarted
+from gapath.planning.device import device_of
 from gapath.problem import Plan
 from gapath.running.config import Run
 from gapath.running.progress import Done, Earlier, Journal, done_of, earlier
@@ -119,7 +120,7 @@ def execute(
             whole = is_whole(folder, run.settings)
             if whole and not run.force:
                 return skipped
-            origin = origin_of(asker) if run.provenance else Origin({}, {})
+            origin = origin_of(asker, device_of(run.task)) if run.provenance else Origin({}, {})
             manifest = replace(_manifest(run, folder, command), provenance=origin.said)
             return _execute_held(run, folder, (manifest, origin), _Watched(progress, tell), whole)
     except Busy:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, ClassVar, Self
 
@@ -12,6 +12,7 @@ from gapath.components import build
 from gapath.errors import require
 from gapath.events import Evolved, RunStarted, Surveyed, TrialFinished, TrialStarted
 from gapath.grid import GridMap
+from gapath.planning.device import device_of, on_device
 from gapath.planning.planner import Particular, Planner
 from gapath.planning.shortest_path import shortest_path
 from gapath.planning.simulation import plan_trials
@@ -51,6 +52,15 @@ class Task:
         good = planner.minimises in known
         require(good, "planner, minimises", planner.minimises, f"one of {', '.join(known)}")
         return cls(planner)
+
+    @property
+    def device(self) -> str:
+        """What computes its planner."""
+        return device_of(self.planner)
+
+    def on(self, device: str) -> Self:
+        """Give a copy whose planner a device computes; raises InputError."""
+        return replace(self, planner=on_device(self.planner, device))
 
     def read(self) -> Mapping[str, GridMap]:
         """Read nothing: it needs the map alone."""

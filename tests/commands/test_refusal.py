@@ -7,8 +7,10 @@ from importlib.metadata import version
 import pytest
 
 MAPS = r"one of \d+ names, see gapath help"
-ROOT = "choice, corner_cutting, drive, experiment, force, kernels, map, name, navigator, output, "
-ROOT += "planner, provenance, recorder, scenario, search, seed, shard, shards, task, threads, "
+ROOT = "choice, corner_cutting, device, drive, experiment, force, kernels, map, name, navigator, "
+ROOT += (
+    "output, planner, provenance, recorder, scenario, search, seed, shard, shards, task, threads, "
+)
 ROOT += "trials"
 
 CASES = {
@@ -87,7 +89,7 @@ CASES = {
     "task=plan or task=scenario, to which the group planner belongs",
     # Jobs of one sweep that are one run.
     "-m threads=1,2": "sweep: got threads=1 and threads=2, which are one run, expected jobs that "
-    "differ in more than output, force, threads, kernels, provenance",
+    "differ in more than output, force, threads, kernels, device, provenance",
 }
 
 

@@ -7,30 +7,19 @@ Python; it reads arrays that only Python understands, so it needs ``NUMBA_DISABL
 
 from collections.abc import Callable
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any
 
 import numba
 from numba import cuda as cuda
 from numba import int32 as int32
 
 from gapath.errors import InputError
+from gapath.kernels.cuda.card import Card
 
 numba.config.CUDA_LOW_OCCUPANCY_WARNINGS = 0  # type: ignore[attr-defined]  # few runs are no fault
 
 _BLOCK = 128
 _BLOCKS = 8  # for each multiprocessor
-
-
-class Card(NamedTuple):
-    """What computes: a GPU, or what stands for one."""
-
-    name: str
-    blocks: int
-    """Blocks of threads, at most."""
-    threads: int
-    """Threads of a block, at most."""
-    memory: int
-    """Bytes that a launch may take."""
 
 
 def jit(function: Callable[..., None]) -> Any:

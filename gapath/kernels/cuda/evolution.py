@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapath.errors import require
-from gapath.kernels.cuda.compiler import Card, cuda, int32, jit
+from gapath.kernels.cuda.card import Card
+from gapath.kernels.cuda.compiler import cuda, int32, jit
 from gapath.kernels.cuda.fitness import MOST_PARTS, fitness, way_rows
 from gapath.kernels.kg18.evolution import Outcomes
 from gapath.kernels.kg18.population import (

@@ -69,13 +69,15 @@ class Origin:
         return {**self.said, "spent": spent}
 
 
-def origin_of(asker: Flat) -> Origin:
+def origin_of(asker: Flat, device: str) -> Origin:
     """Find out where a run comes from that begins now.
 
     Parameters
     ----------
     asker : mapping
         Who asked for it.
+    device : str
+        What computes it.
 
     Returns
     -------
@@ -92,7 +94,7 @@ def origin_of(asker: Flat) -> Origin:
     said = {
         "directory": directory,
         "gapath": {**source, "code": code_hash(), "edited": edited(code_hash())},
-        "machine": machine(),
+        "machine": {**machine(), "device": device},
         "asker": dict(asker),
         PACKAGES: packages(),
     }

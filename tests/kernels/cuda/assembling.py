@@ -14,7 +14,7 @@ import numba.cuda.dispatcher
 import numpy as np
 
 from gapath.kernels.cuda import evolution
-from gapath.kernels.cuda.compiler import Card
+from gapath.kernels.cuda.card import Card
 
 SOUGHT = {
     "floats": r"\.f(16|32|64)\b",
@@ -40,14 +40,13 @@ class Launch:
 
 def signature(case):
     """The types of what `outcomes` launches a kernel with."""
-    _, arguments, whole, streams = evolving.asked(case)
     on_host = SimpleNamespace(
         to_device=np.array, device_array=np.empty, device_array_like=np.empty_like
     )
     usual = evolution.compiled, evolution.cuda
     evolution.compiled, evolution.cuda = lambda *kind: Launch(), on_host
     try:
-        evolution.outcomes(Card("none", 1, 1, 1 << 20), *arguments[:4], whole, streams)
+        evolving.launched(Card("none", 1, 1, 1 << 20), *evolving.asked(case))
     except Launched as launched:
         return numba.void(*map(numba.typeof, launched.args))
     finally:

@@ -1,4 +1,4 @@
-"""Evolutions on a GPU or in its simulator, as JSON: what a process does that `GIVEN` asks.
+"""Evolutions on a GPU, in its simulator and on the processor.
 
 Started as a script it reads cases from standard input, and writes what they come to.
 """
@@ -45,21 +45,23 @@ def posed(rows, cols, obstacles, rule, seed):
 
 
 def asked(case):
-    """Give the arguments of a case, its fractions and its streams."""
+    """Give the planner of a case, its problem and its streams."""
     ga = Planner(**(USUAL | case.get("settings", {})))
     shape = case.get("map", [9, 12])
     seed = case.get("seed", 0)
     problem = posed(*shape, case.get("obstacles", 0.2), case.get("rule", "allow"), seed)
     runs = case.get("runs", 3)
-    streams = np.array([stream(seed, trial) for trial in range(runs)])
-    whole = fractions(ga.control_points, ga.way_points, ga.sampling == "span")
-    return ga, ga.arguments(problem), whole, streams
+    return ga, problem, np.array([stream(seed, trial) for trial in range(runs)])
 
 
 def by_processor(case):
-    """Do a case's runs on the processor: epochs, keys, best chromosomes, streams."""
-    ga, arguments, _, streams = asked(case)
-    ends = run_evolutions(*arguments, streams, ga.evolve)
+    """Do a case's runs on the processor."""
+    return processed(*asked(case))
+
+
+def processed(ga, problem, streams):
+    """Do runs on the processor: epochs, keys, best chromosomes, streams."""
+    ends = run_evolutions(*ga.arguments(problem), streams, ga.evolve)
     epochs = [len(each.epochs) for each in ends]
     keys = [int(each.epochs["key"][-1]) for each in ends]
     best = [each.chromosomes[-1].tolist() for each in ends]
@@ -71,15 +73,23 @@ def by_card(case):
     from gapath.kernels.cuda import evolution
     from gapath.kernels.cuda.compiler import card
 
-    _, arguments, whole, streams = asked(case)
     limits = {name: case[name] for name in ("MOST_RUNS", "MOST_SHARED") if name in case}
     usual = {name: getattr(evolution, name) for name in limits}
     for name, value in limits.items():
         setattr(evolution, name, value)
     with_memory = card()._replace(**case.get("card", {}))
-    found = evolution.outcomes(with_memory, *arguments[:4], whole, streams)
+    found = launched(with_memory, *asked(case))
     for name, value in usual.items():
         setattr(evolution, name, value)
+    return found
+
+
+def launched(card, ga, problem, streams):
+    """Do runs on a GPU: epochs, keys, best chromosomes, streams."""
+    from gapath.kernels.cuda.evolution import outcomes
+
+    whole = fractions(ga.control_points, ga.way_points, ga.sampling == "span")
+    found = outcomes(card, *ga.arguments(problem)[:4], whole, streams)
     return [*(each.tolist() for each in found), streams.tolist()]
 
 

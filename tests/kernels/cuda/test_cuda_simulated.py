@@ -1,15 +1,11 @@
 """The GPU's evolution in numba's simulator: what the processor comes to, setting by setting."""
 
 import json
-import os
-import subprocess
-import sys
-from importlib.util import find_spec
 from pathlib import Path
 
 import evolving
 import numpy as np
-import pytest
+from simulator import needs_numba_cuda, simulate
 
 CASES = {
     "usual": {"runs": 7},
@@ -44,24 +40,17 @@ CASES = {
     "less memory than threads": {"card": {"memory": 3 * 5 * 2 * (4 * 4 + 8) + 12}, "runs": 5},
     "a block": {"card": {"blocks": 1, "threads": 5}, "runs": 9},
     "one run": {"runs": 1},
+    "keys that are equal": {
+        "map": [5, 8],
+        "settings": {"min_epochs": 9, "max_epochs": 9, "population": 24, "neighbourhood": 2},
+        "runs": 6,
+    },
 }
-
-SIMULATED = {"NUMBA_ENABLE_CUDASIM": "1", "NUMBA_DISABLE_JIT": "1", "PYTHONWARNINGS": "ignore"}
-
-needs_numba_cuda = pytest.mark.skipif(
-    find_spec("numba_cuda") is None, reason="numba-cuda is not installed (requirements.lock has it)"
-)
 
 
 def simulated(cases):
     """What cases come to in a process of the simulator's."""
-    done = subprocess.run(
-        [sys.executable, Path(evolving.__file__)],
-        input=json.dumps(cases),
-        capture_output=True,
-        text=True,
-        env=os.environ | SIMULATED,
-    )
+    done = simulate(evolving.__file__, input=json.dumps(cases))
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 
@@ -108,11 +97,5 @@ def test_a_population_that_memory_has_no_room_for_is_refused():
         "try: evolving.by_card({'card': {'memory': 99}})\n"
         "except InputError as error: print(error)"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        cwd=Path(evolving.__file__).parent,
-        capture_output=True,
-        text=True,
-        env=os.environ | SIMULATED,
-    )
+    done = simulate("-c", code, cwd=Path(evolving.__file__).parent)
     assert "planner.population: got 5, expected a population that fits 99 bytes" in done.stdout

@@ -27,10 +27,10 @@ def trees(monkeypatch, tmp_path):
 
 
 def test_both_repositories_are_told_and_each_has_its_diff(trees, tmp_path):
-    assert not origin_of({}).files
+    assert not origin_of({}, "cpu").files
     trees[tmp_path / "here"] = Tree({"clean": False}, b"mine")
     trees[tmp_path / "own"] = Tree({"clean": False}, b"gapath's")
-    found = origin_of({"command": "gapath seed=1"})
+    found = origin_of({"command": "gapath seed=1"}, "cpu")
     assert found.files == {DIFF: b"mine", GAPATH_DIFF: b"gapath's"}
     assert found.said["directory"] == {"clean": False, "diff": DIFF}
     code = keys.code_hash()
@@ -43,7 +43,7 @@ def test_both_repositories_are_told_and_each_has_its_diff(trees, tmp_path):
 def test_one_repository_of_both_has_one_diff(trees, tmp_path, monkeypatch):
     monkeypatch.setattr(origin, "_checkout", lambda: tmp_path / "here")
     trees[tmp_path / "here"] = Tree({"clean": False}, b"both")
-    found = origin_of({})
+    found = origin_of({}, "cpu")
     assert found.files == {DIFF: b"both"}
     assert found.said["gapath"]["diff"] == found.said["directory"]["diff"] == DIFF
 
@@ -51,7 +51,7 @@ def test_one_repository_of_both_has_one_diff(trees, tmp_path, monkeypatch):
 def test_a_package_that_is_no_checkout_says_so(tmp_path, monkeypatch):
     monkeypatch.setattr(origin, "_here", lambda: None)
     monkeypatch.setattr(origin, "_checkout", lambda: None)
-    found = origin_of({})
+    found = origin_of({}, "cpu")
     assert found.said["directory"] == {"told": "no repository"}
     assert found.said["gapath"]["told"] == "an installed package, no checkout"
 
@@ -80,7 +80,7 @@ def test_a_working_directory_that_is_gone_is_no_fault(tmp_path, monkeypatch):
     place.mkdir()
     monkeypatch.chdir(place)
     shutil.rmtree(place)
-    assert origin_of({}).said["directory"] == {"told": "no repository"}
+    assert origin_of({}, "cpu").said["directory"] == {"told": "no repository"}
 
 
 def test_edited_sources_are_seen_and_sources_that_are_gone(monkeypatch, tmp_path):
@@ -101,7 +101,7 @@ def test_edited_sources_are_seen_and_sources_that_are_gone(monkeypatch, tmp_path
 
 
 def test_a_clock_that_jumps_gives_no_time_below_nothing(trees, monkeypatch):
-    found = origin_of({})
+    found = origin_of({}, "cpu")
     monkeypatch.setattr(time, "time", lambda: 0.0)
     spent = found.ended(3)["spent"]
     assert spent["wall_s"] >= 0 and spent["cpu_s"] >= 0
