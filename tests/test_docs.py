@@ -30,6 +30,7 @@ from gapath.pipelines.report import cli as report_cli
 from gapath.pipelines.report import watch
 from gapath.planning.path import octile_length
 from gapath.running import config
+from gapath.running.posing import read_problem
 from gapath.task import find_task
 
 ROOT = Path(__file__).parents[1]
@@ -252,7 +253,7 @@ def check_job(overrides):
         components.build("recorder", values, f"recorder.{name}")
     components.build("map", root.map, "map")
     if "path" in root.map:
-        config.read_problem(root, made, {})
+        read_problem(root.map, root.corner_cutting, made, {})
 
 
 def check_genotype(words):

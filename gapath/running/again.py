@@ -18,9 +18,9 @@ from gapath.grid import Field, GridMap
 from gapath.planning.acceleration import AUTO, with_kernels
 from gapath.planning.device import CPU
 from gapath.problem import CornerCutting, Plan, Problem
-from gapath.running.config import Root, read_problem, settings_of, split
+from gapath.running.config import Root, settings_of, split
 from gapath.running.naming import Method, changes_of, check_name, map_name, usual_values
-from gapath.running.posing import first_of
+from gapath.running.posing import first_of, read_problem
 from gapath.running.shards import WHOLE, span
 from gapath.store.settings import flatten, nested
 from gapath.task import Batch, Posing, Task, find_task
@@ -123,7 +123,7 @@ def _problem(
         size, there = (own.get("width"), own.get("height")), (logged.map.cols, logged.map.rows)
         fits = None in size or size == there
         require(fits, "map.width, map.height", size, f"{there}, as the log's map is")
-        return read_problem(root, task, maps), told
+        return read_problem(root.map, root.corner_cutting, task, maps), told
     rule = CornerCutting.named(root.corner_cutting)
     kind, path, grid = own["kind"], str(own["path"]), logged.map
     if load("map", kind).__module__.startswith("gapath.mapio."):

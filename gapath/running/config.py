@@ -9,20 +9,19 @@ from typing import Any
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import InterpolationResolutionError
 
-from gapath.components import build, build_recorders, checked, normalised, typed
+from gapath.components import build_recorders, checked, normalised, typed
 from gapath.discovery import kinds
 from gapath.errors import InputError, one_of, require
 from gapath.events import Recorder, Settings
-from gapath.grid import GridMap
 from gapath.planning.acceleration import with_kernels
 from gapath.planning.device import CPU, on_device
-from gapath.problem import CornerCutting, Problem
-from gapath.running.naming import Method, check_name, map_name, method_of
-from gapath.running.posing import first_of, in_fields
+from gapath.problem import Problem
+from gapath.running.naming import Method, check_name, method_of
+from gapath.running.posing import in_fields, read_problem
 from gapath.running.shards import span, without_whole
 from gapath.store.inputs import Inputs, watched
 from gapath.store.settings import flatten
-from gapath.task import Listing, Posing, Task, check_events, columns, find_task
+from gapath.task import Posing, Task, check_events, columns, find_task
 
 
 @dataclass
@@ -200,7 +199,7 @@ def make_run(
         made = on_device(with_kernels(task.make(settings), root.kernels), root.device)
         maps = made.read()
     with watched() as map_inputs:
-        problem = read_problem(root, made, maps)
+        problem = read_problem(root.map, root.corner_cutting, made, maps)
     trials = root.trials * (1 if problem.queries is None else len(problem.queries))
     require(trials <= 10**6, "trials", root.trials, f"fewer: {trials} in all, at most 10^6")
     part = span(root.trials, root.shard, root.shards, isinstance(made, Posing))
@@ -316,40 +315,3 @@ def settings_of(root: Root, chosen: Mapping[str, Any]) -> dict[str, Any]:
         else normalised(group, chosen[group], group)
         for group in task.groups
     }
-
-
-def read_problem(settings: Root, task: Task | None, maps: Mapping[str, GridMap]) -> Problem:
-    """Read the map and pose the problem that its start and target define.
-
-    Parameters
-    ----------
-    settings : Root
-        Name the map and the rule.
-    task : Task, optional
-        One that poses several problems is asked which (`gapath.task.Posing`).
-    maps : mapping of str to GridMap
-        What else the task has read.
-
-    Returns
-    -------
-    Problem
-        Of several the first that can be solved, or else that can be asked.
-
-    Raises
-    ------
-    InputError
-        If the map cannot be read, or has no such start and target.
-    """
-    rule = CornerCutting.named(settings.corner_cutting)
-    reader = build("map", settings.map, "map")
-    grid: GridMap = reader.read()
-    named = map_name(grid.name, settings.map)
-    if named != grid.name:
-        grid = dataclasses.replace(grid, name=named)
-    if isinstance(task, Posing):
-        listed = reader.queries(grid) if isinstance(reader, Listing) else None
-        return first_of(task.pose(grid, listed, rule), grid, rule, maps)
-    for name in ("start", "target"):
-        require(getattr(grid, name) is not None, f"map.{name}", "null", "a field [x, y]")
-    assert grid.start is not None and grid.target is not None
-    return Problem(grid, grid.start, grid.target, rule, maps, grid.published_length)

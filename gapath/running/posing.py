@@ -1,5 +1,6 @@
 """Which problem a run poses: its ends in metres, or the one of several that stands for all."""
 
+import dataclasses
 import re
 from collections.abc import Mapping
 from typing import Any
@@ -10,7 +11,50 @@ from gapath.components import build
 from gapath.errors import InputError, require
 from gapath.grid import GridMap
 from gapath.problem import CornerCutting, Problem
+from gapath.running.naming import map_name
 from gapath.scenario.listed import Queries
+from gapath.task import Listing, Posing, Task
+
+
+def read_problem(
+    chosen: dict[str, Any], rule_name: str, task: Task | None, maps: Mapping[str, GridMap]
+) -> Problem:
+    """Read the map and pose the problem that its start and target define.
+
+    Parameters
+    ----------
+    chosen : dict
+        ``kind`` and settings of the map.
+    rule_name : str
+        Name of a `CornerCutting` rule, in lower case.
+    task : Task, optional
+        One that poses several problems is asked which (`gapath.task.Posing`).
+    maps : mapping of str to GridMap
+        What else the task has read.
+
+    Returns
+    -------
+    Problem
+        Of several the first that can be solved, or else that can be asked.
+
+    Raises
+    ------
+    InputError
+        If the map cannot be read, or has no such start and target.
+    """
+    rule = CornerCutting.named(rule_name)
+    reader = build("map", chosen, "map")
+    grid: GridMap = reader.read()
+    named = map_name(grid.name, chosen)
+    if named != grid.name:
+        grid = dataclasses.replace(grid, name=named)
+    if isinstance(task, Posing):
+        listed = reader.queries(grid) if isinstance(reader, Listing) else None
+        return first_of(task.pose(grid, listed, rule), grid, rule, maps)
+    for name in ("start", "target"):
+        require(getattr(grid, name) is not None, f"map.{name}", "null", "a field [x, y]")
+    assert grid.start is not None and grid.target is not None
+    return Problem(grid, grid.start, grid.target, rule, maps, grid.published_length)
 
 
 def first_of(

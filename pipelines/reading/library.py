@@ -32,8 +32,9 @@ from gapath.pipelines.reading.results import results_of
 from gapath.planning.path import without_stands
 from gapath.problem import Plan, Problem, no_path
 from gapath.recorders.mcap import FILE
-from gapath.running.config import HOW, read_problem, split
+from gapath.running.config import HOW, split
 from gapath.running.naming import usual_values
+from gapath.running.posing import read_problem
 from gapath.running.shards import WHOLE
 from gapath.store.records import RunRecord, find_run, find_runs, is_run, read_record
 from gapath.store.settings import Value, nested, tabular
@@ -188,7 +189,7 @@ class Run(Shown):
         root, chosen = split(WHOLE | nested(self.record.settings) | how)
         task = find_task(root.task)
         made = task.make(chosen) if issubclass(task, Posing) else None
-        problem = read_problem(root, made, {})
+        problem = read_problem(root.map, root.corner_cutting, made, {})
         right = f"the map as it was, {known.map_digest[:12]}"
         require(problem.map.digest == known.map_digest, "map", problem.map.digest[:12], right)
         return problem
