@@ -67,10 +67,13 @@ test: $(VENV)/ready ## run all tests
 .PHONY: test-cuda
 test-cuda: $(VENV)/ready ## try KG18's evolution on this machine's GPU; without one its tests say what is missing
 	@$(BIN)/python -m pytest -n 0 -rs tests/kernels/cuda
+.PHONY: test-long
+test-long: $(VENV)/ready ## run all tests, on all maps and instances; before a release
+	@GAPATH_TESTS=long $(BIN)/python -m pytest
 
 .PHONY: reproduce
 reproduce: $(VENV)/ready ## do every published experiment, small, and compare with its golden hashes (three minutes)
-	@$(BIN)/python -m pytest --tb=no --figures tests/test_golden.py -k an_experiment
+	@GAPATH_TESTS=long $(BIN)/python -m pytest --tb=no --figures tests/test_golden.py -k an_experiment
 
 # One after the other, since some measure memory or time, and some take both cores.
 .PHONY: reliability

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scale import whole
 from strategies import planner
 
 from gapath.errors import InputError
@@ -12,6 +13,7 @@ from gapath.planning.shortest_path import shortest_path
 from gapath.problem import Problem
 
 INSTANCES = range(30)
+SOME = whole(INSTANCES[::10], INSTANCES)  # on which a search for straight pieces takes its time
 GA = {
     "ga1": planner(population=40),
     "ga2": planner(population=100),
@@ -64,7 +66,7 @@ def test_instances_differ_and_can_be_solved(name):
     ("name", "pieces"), [("kg18_test1", 2), ("kg18_test2", 2), ("kg18_test3", 3)]
 )
 def test_classes_need_so_many_straight_pieces(name, pieces):
-    for i in INSTANCES:
+    for i in SOME:
         p = problem(name, i)
         distances = link_distances(p.map.table, p.start, pieces)
         assert distances[p.target[1], p.target[0]] == pieces
@@ -75,7 +77,7 @@ def test_no_polyline_of_four_pieces_joins_start_and_target_in_class_4():
 
     Two pieces ahead from the start and two back from the target share no field.
     """
-    for i in INSTANCES:
+    for i in SOME:
         p = problem("kg18_test4", i)
         ahead = link_distances(p.map.table, p.start, 2) >= 0
         behind = link_distances(p.map.table, p.target, 2) >= 0
