@@ -9,10 +9,12 @@ from pathlib import Path
 
 import pytest
 import yaml
-from hydra import compose, initialize_config_dir
+from hydra import initialize_config_dir
 from hydra._internal.core_plugins.basic_sweeper import BasicSweeper
 from hydra._internal.utils import get_args_parser
+from hydra.core.global_hydra import GlobalHydra
 from hydra.core.override_parser.overrides_parser import OverridesParser
+from hydra.types import RunMode
 from omegaconf import OmegaConf
 
 import gapath
@@ -21,6 +23,7 @@ from gapath.api import load_map
 from gapath.commands import genotype as genotype_cli
 from gapath.commands import log as log_cli
 from gapath.commands import run as cli
+from gapath.commands.composing import Composer
 from gapath.commands.told import screen
 from gapath.mapio.movingai import read_scenario
 from gapath.pipelines.asking import command as asking
@@ -45,13 +48,11 @@ KG18, rest = PAPERS.split("\n## S04")
 S04, M22 = rest.split("\n## M22")
 OF_PAPERS = pytest.mark.parametrize(
     ("page", "name", "assumed"),
-    [
-        (KG18, "bspline_ga", "### What is assumed"),
-        (S04, "sedighi", "### What is assumed of S04"),
-        (M22, "visibility_ga", "### What is assumed of M22"),
-    ],
+    [(KG18, "bspline_ga", "### What is assumed"),
+     (S04, "sedighi", "### What is assumed of S04"),
+     (M22, "visibility_ga", "### What is assumed of M22")],
     ids=["kg18", "s04", "m22"],
-)
+)  # fmt: skip
 
 each_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 
@@ -204,10 +205,6 @@ def check_parser(parser, words):
         assert not stop.code, f"{parser.prog} does not know {words}"
 
 
-def check_log(words):
-    check_parser(log_cli._parser(), words)
-
-
 def check_report(words):
     if words[:1] == ["runs"]:
         check_parser(asking.parser(), words[1:])
@@ -232,21 +229,30 @@ def check_gapath(words):
     given = get_args_parser().parse_args(words)
     if given.shell_completion or given.help:
         return
+    jobs = [given.overrides]
+    if given.multirun:
+        parsed = OverridesParser.create().parse_overrides(given.overrides)
+        each = [BasicSweeper.split_arguments([setting], None)[0] for setting in parsed]
+        most = max(map(len, each))
+        jobs = [[word for v in each for word in v[i % len(v)]] for i in range(most)]
+    for overrides in jobs:
+        check_job(tuple(overrides))
+
+
+@cache
+def composer():
+    """Compose as a sweep does: YAMLs that several jobs choose once."""
     with initialize_config_dir(config.conf_folder(), version_base="1.3"):
-        jobs = [given.overrides]
-        if given.multirun:
-            parsed = OverridesParser.create().parse_overrides(given.overrides)
-            each = [BasicSweeper.split_arguments([setting], None)[0] for setting in parsed]
-            most = max(map(len, each))
-            jobs = [[word for v in each for word in v[i % len(v)]] for i in range(most)]
-        for overrides in jobs:
-            check_job(tuple(overrides))
+        loader = GlobalHydra.instance().config_loader()
+        sweep = loader.load_configuration("config", ["hydra.mode=MULTIRUN"], RunMode.MULTIRUN)
+        return Composer(loader, sweep)
 
 
 @cache  # pages show the same ones
 def check_job(overrides):
     """Compose a job and make its parts; only maps with files are read."""
-    loose = OmegaConf.to_container(compose("config", overrides=list(overrides)))
+    loose = OmegaConf.to_container(composer()(overrides))
+    del loose["hydra"]
     root, chosen = config.split(loose)
     made = find_task(root.task).make(chosen)
     for name, values in root.recorder.items():
@@ -262,7 +268,7 @@ def check_genotype(words):
 
 CHECKS = {
     "gapath": check_gapath,
-    "gapath-log": check_log,
+    "gapath-log": lambda words: check_parser(log_cli._parser(), words),
     "gapath-report": check_report,
     "gapath-genotype": check_genotype,
 }
@@ -291,10 +297,8 @@ def test_every_command_with_a_file_does_what_the_page_says(command, tmp_path, mo
     cli.main()
     text, errors = capfd.readouterr()
     assert errors == ""
-    one, many = (
-        r"^(status +(?:found|optimal)|outcome +reached)$",
-        r"^found +\d+ \(100.0 %\)$|: (\d+) of \2 found",
-    )
+    one = r"^(status +(?:found|optimal)|outcome +reached)$"
+    many = r"^found +\d+ \(100.0 %\)$|: (\d+) of \2 found"
     assert re.search(f"{one}|{many}", text, re.MULTILINE)
 
 
@@ -316,16 +320,12 @@ def test_published_lengths_of_the_example_are_those_of_its_scenario(monkeypatch)
 
 
 def test_a_command_that_is_wrong_is_noticed():
-    for words in (
-        ["planner=ga9"],
-        ["planner.colour=red"],
-        ["planner.population=-5"],
-        ["map=file", "map.path=office.png", "map.start=[1,1]", "map.target=[2,2]"],
-    ):
+    outside = ["map=file", "map.path=office.png", "map.start=[1,1]", "map.target=[2,2]"]
+    for words in (["planner=ga9"], ["planner.colour=red"], ["planner.population=-5"], outside):
         with pytest.raises(cli.BAD_CONFIGURATION):
             check_gapath(words)
     with pytest.raises(AssertionError, match="gapath-log does not know"):
-        check_log(["look", "run.mcap"])
+        CHECKS["gapath-log"](["look", "run.mcap"])
     with pytest.raises(AssertionError, match="gapath-report does not know"):
         check_report(["outputs", "--colour"])
 
