@@ -1,6 +1,7 @@
 """What every planner, recorder and map reader must do; they are found, not listed."""
 
 import inspect
+from functools import cache
 from importlib.resources import files
 
 import numpy as np
@@ -144,11 +145,8 @@ def test_whatever_is_asked_of_a_plan_it_tells(name):
     planner, grid = make_planner(name), make_problem().map
     weights = np.full((24, 24), 0.5)
     weights[:, 12] = 1.0
-    problems = [
-        make_problem(),
-        Problem(grid, (4, 20), (4, 20)),
-        Problem(GridMap("halves", weights), (2, 2), (21, 21)),
-    ]
+    halves = Problem(GridMap("halves", weights), (2, 2), (21, 21))
+    problems = [make_problem(), Problem(grid, (4, 20), (4, 20)), halves]
     plans = [planner.plan(each, rng.stream(3, i)) for each in problems for i in range(2)]
     assert not all(plan.feasible for plan in plans)
     asked = [problem for problem in problems for _ in range(2)]
@@ -210,6 +208,12 @@ def make_run(recorders, planner, tmp_path, trials=3):
     )
 
 
+@cache  # each recorder takes the same
+def trials_of(planner_name):
+    planner, problem = make_planner(planner_name), make_problem()
+    return [*plan_trials(problem, shortest_path(problem), planner, 4, 3)]
+
+
 @pytest.mark.parametrize("name", RECORDERS)
 @pytest.mark.parametrize("planner_name", PLANNERS)
 def test_recorders_take_every_planners_events(name, planner_name, tmp_path):
@@ -220,7 +224,7 @@ def test_recorders_take_every_planners_events(name, planner_name, tmp_path):
     recorder.open(str(tmp_path))
     recorder.record(run_started(make_run([], planner, tmp_path), optimum))
     step = 0
-    for trial in plan_trials(problem, optimum, planner, 4, 3):
+    for trial in trials_of(planner_name):
         for event in trial_events(trial, 4, step):
             recorder.record(event)
         step += max(trial.plan.epochs, 1)
@@ -242,11 +246,8 @@ def test_a_recorder_that_is_aborted_leaves_no_file_that_looks_whole(name, tmp_pa
 
 @pytest.mark.parametrize("name", RECORDERS)
 def test_recording_changes_no_result(name, tmp_path):
-    rows = []
-    for recorders in (
-        [],
-        [components.build("recorder", yaml_values("recorder", name), "recorder")],
-    ):
+    rows, recorder = [], components.build("recorder", yaml_values("recorder", name), "recorder")
+    for recorders in ([], [recorder]):
         folder = tmp_path / str(len(recorders))
         came = execute(make_run(recorders, make_planner("ga1"), folder), "test", False).rows
         rows.append([came[name].tolist() for name in ("status", "cost", "epochs", "evaluations")])
