@@ -174,6 +174,7 @@ def packages_of(extra: str) -> tuple[str, ...]:
     return tuple(found[1] for each in needed if (found := named.match(each)))
 
 
+@lru_cache  # a look-up reads the whole description of a package
 def _installed(package: str) -> bool:
     try:
         metadata.version(package)
