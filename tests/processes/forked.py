@@ -12,8 +12,20 @@ MODULES = {
     "gapath-log": "gapath.commands.log",
     "gapath-report": "gapath.pipelines.report.cli",
 }
+LATE = [
+    *(f"gapath.tasks.{name}" for name in ("plan", "drive", "scenario")),
+    *(f"gapath.pipelines.compare.{name}" for name in ("answer", "command", "figures")),
+    "gapath.pipelines.asking.command",
+    "gapath.planners.bspline_ga",
+    "duckdb",
+    "numba.np.arrayobj",
+    "matplotlib.figure",
+    "scipy.stats",
+]
+"""What the commands import only when they need it."""
+
 PROCESSES = multiprocessing.get_context("forkserver")
-PROCESSES.set_forkserver_preload([*MODULES.values(), "matplotlib.figure", "scipy.stats"])
+PROCESSES.set_forkserver_preload([*MODULES.values(), *LATE])
 
 
 def run(words, folder, **environment):
