@@ -67,6 +67,7 @@ test: $(VENV)/ready ## run all tests
 .PHONY: test-cuda
 test-cuda: $(VENV)/ready ## try KG18's evolution on this machine's GPU; without one its tests say what is missing
 	@$(BIN)/python -m pytest -n 0 -rs tests/kernels/cuda
+
 .PHONY: test-long
 test-long: $(VENV)/ready ## run all tests, on all maps and instances; before a release
 	@GAPATH_TESTS=long $(BIN)/python -m pytest
