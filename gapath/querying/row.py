@@ -105,7 +105,7 @@ def plan_values(
         "evaluations": plan.evaluations,
         "expansions": plan.expansions,
         "plan_time_s": answer.plan_time_s,
-        "stage_times_s": json.dumps(dict(plan.stages)),
+        "stage_times_s": json.dumps(dict(plan.stages)) if plan.stages else "{}",
     }
 
 
