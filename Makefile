@@ -12,8 +12,8 @@ help: ## list the targets
 
 # These give computing times, or take both cores, so they run alone; the others two at a time.
 TIMED := table1 drives drives_enclosed s04_drives s04_table1 m22 m22_concave field
-# What no paper has: one decision at a time, many settings; each takes minutes of its own.
-OWN := drive_choices s04_sweep tune
+# What no paper has: one decision at a time, many settings, a GPU's many seeds; each takes minutes of its own.
+OWN := drive_choices s04_sweep tune table1_million landscape
 OTHERS := $(filter-out $(TIMED) $(OWN),$(basename $(notdir $(wildcard conf/experiment/*.yaml))))
 
 .PHONY: paper

@@ -55,6 +55,13 @@ PUBLISHED = {
         "map.width=300",
         "map.height=150",
     ],
+    "landscape": [
+        "device=cpu",
+        "trials=2",
+        "planner.population=20,200",
+        "planner.mutation_probability=0.1,0.8",
+        "planner.control_points=3,8",
+    ],
     "m22": ["trials=2"],
     "m22_concave": ["trials=2"],
     "s04_drives": ["trials=1"],
@@ -66,6 +73,7 @@ PUBLISHED = {
     ],
     "s04_table1": ["trials=2", "planner.max_epochs=100"],
     "table1": ["trials=2"],
+    "table1_million": ["device=cpu", "trials=2"],
     "tune": [
         "trials=1",
         "hydra.sweeper.n_trials=2",

@@ -10,6 +10,7 @@ from functools import lru_cache
 from typing import Any
 
 import numba
+import numpy as np
 from numba import cuda as cuda
 from numba import int32 as int32
 
@@ -45,7 +46,7 @@ def card() -> Card:
         return Card("simulator", 2, 4, 1 << 28)
     try:
         device = cuda.get_current_device()
-        one = cuda.to_device([0])
+        one = cuda.to_device(np.zeros(1, dtype=np.int64))
         _count[1, 1](one)
         if one.copy_to_host()[0] != 1:
             raise RuntimeError("it does not count to one")
