@@ -9,7 +9,7 @@ import copy
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
-from functools import cache, cached_property, partial
+from functools import cached_property, partial
 from typing import TypeAlias
 
 import numpy as np
@@ -327,7 +327,7 @@ class Planner:
             epochs=epochs,
             evaluations=evaluations(self.population, epochs),
             trace=trace,
-            lines=cache(partial(self._lines, chromosome)) if found else no_path,
+            lines=partial(self._lines, chromosome) if found else no_path,
         )
 
     def _lines(self, chromosome: NDArray[np.int32]) -> NDArray[np.int32]:

@@ -19,7 +19,7 @@ def has(package):
 
 @pytest.mark.skipif(
     not (has("numba-cuda") and has("nvidia-nvvm")),
-    reason="the compiler of PTX is not installed: pip install 'gapath[cuda]', 520 MB",
+    reason="the compiler of PTX is not installed: pip install 'gapath[cuda]', 530 MB",
 )
 @pytest.mark.parametrize("capability", [(8, 0), (9, 0)])
 def test_kernels_decide_without_floats_and_count_runs_alone(capability):
