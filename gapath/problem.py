@@ -116,7 +116,8 @@ class Problem:
                 limits = f"0 <= x < {self.map.cols}, 0 <= y < {self.map.rows}"
                 raise InputError(f"map.{name}", list(place), f"a field [x, y] with {limits}")
             if self.map.obstacles[place[1], place[0]]:
-                hint = nearest_told(self.map, place)
+                nearest = nearest_told(self.map, self.map.obstacles, place)
+                hint = f"; the nearest is {nearest}" if nearest else ", but there is none"
                 ends = [e for e in (self.start, self.target) if self.map.contains(e)]
                 hint += other_reading(self.map, self.map.weights == 0, ends)
                 raise InputError(

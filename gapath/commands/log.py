@@ -170,7 +170,7 @@ def _info(arguments: argparse.Namespace) -> int:
     task, problem, grid = find_task(run.task), run.problem, run.problem.map
     ends = ", ".join(f"{len(trials)} {end}" for end, trials in finished.items())
     done = sum(map(len, finished.values()))
-    rare = sorted(finished, key=lambda end: len(finished[end]))[:-1]
+    rare = [end for end, trials in finished.items() if 2 * len(trials) <= done]
     rows = {
         "file": f"{path}, {path.stat().st_size} bytes",
         "state": state,
@@ -187,7 +187,7 @@ def _info(arguments: argparse.Namespace) -> int:
         "versions": ", ".join(f"{name} {version}" for name, version in run.versions.items()),
     }
     for name, value in rows.items():
-        print(f"{name + ':':14}{printable(value)}")
+        print(f"{name + ':':13} {printable(value)}")
     print("messages:")
     for topic, count in sorted(messages.items()):
         print(f"  {topic:14}{count}")

@@ -31,26 +31,28 @@ def other_reading(grid: PlanningMap, obstacles: NDArray[np.bool_], places: list[
     return f"; or, if {then} is an obstacle here, not {now}, map=image and {setting}"
 
 
-def nearest_told(grid: GridMap, place: Field) -> str:
-    """Say which free field is nearest, on a map with a metric frame (ROS) in metres, too.
+def nearest_told(grid: PlanningMap, obstacles: NDArray[np.bool_], place: Field) -> str | None:
+    """Say which free field is nearest, on a map with a scale or an origin in metres, too.
 
     Parameters
     ----------
-    grid : GridMap
+    grid : GridMap or other map
         The map.
+    obstacles : (rows, cols) bool
+        True where a field of it cannot be passed.
     place : (x, y)
         A field of it.
 
     Returns
     -------
-    str
-        The end of a sentence.
+    str or None
+        As a setting has it: ``[3, 1]``; None if nothing is free.
     """
-    nearest = nearest_free(grid.obstacles, place)
+    nearest = nearest_free(obstacles, place)
     if nearest is None:
-        return ", but there is none"
-    told = f"; the nearest is {list(nearest)}"
-    if grid.source != "rosmap":
+        return None
+    told = str(list(nearest))
+    if not isinstance(grid, GridMap) or (grid.resolution, *grid.origin) == (1.0, 0.0, 0.0, 0.0):
         return told
     x, y = grid.to_metres(np.array([nearest]))[0].round(3).tolist()
     return f"{told}, in metres [{x}m,{y}m]"

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from gapath.errors import Checks, InputError, require, require_extra
 from gapath.kernels.units import OBSTACLE, SCALE
 from gapath.problem import Query
-from gapath.scenario.nearest import nearest_free, other_reading
+from gapath.scenario.nearest import nearest_told, other_reading
 
 Picture = NDArray[np.bool_]
 """True where an obstacle is, (rows, cols)."""
@@ -138,9 +138,9 @@ class Clearance:
         grown = dilate(obstacles, growth)
         for name, place in (("start", problem.start), ("target", problem.target)):
             if grown[place[1], place[0]]:
-                nearest = nearest_free(grown, place)
+                nearest = nearest_told(problem.map, grown, place)
                 right = (
-                    f"a point where the robot fits; the nearest is {list(nearest)}"
+                    f"a point where the robot fits; the nearest is {nearest}"
                     if nearest
                     else "a map with room for the robot; this one has none, or planner.robot_radius"
                     " and planner.threshold that leave some"

@@ -11,6 +11,7 @@ import pytest
 
 from gapath.commands import log as log_cli
 from gapath.events import (
+    NEVER_LEFT,
     DriveFinished,
     DriveStarted,
     Evolved,
@@ -145,9 +146,19 @@ def test_info_of_drives(drive_log, capsys):
     _, out, _ = call(capsys, "info", drive_log)
     lines = {line.split(":")[0]: line for line in out.splitlines()}
     assert lines["trials"].endswith("2 of 2: 1 reached, 1 overran")
+    assert lines["reached"].endswith(" trial 0") and lines["overran"].endswith(" trial 1")
     assert lines["navigator"].endswith(" kg18")
     assert lines["shortest"].endswith(" 1 steps possible")
     assert "  /drive_step   4" in out.splitlines()
+
+
+def test_info_of_a_drive_that_ended_in_many_words(tmp_path, capsys):
+    events = [
+        replace(event, outcome=Outcome.RETURNED) if getattr(event, "outcome", 0) else event
+        for event in drive_events()
+    ]
+    _, out, _ = call(capsys, "info", logged(events, tmp_path))
+    assert f"\nreturned ({NEVER_LEFT}): trial 1\n" in out
 
 
 def test_verify_of_drives_does_not_compare_wall_time(drive_log, replay, capsys):
